@@ -50,8 +50,9 @@ struct ProgramSettings {
       number;  ///< of the main program (O word), its sub-programs behind it; none: made of the job's name
   bool spread_teeth = false;  ///< tooth_order = "spread": neighbours are not cut one after the other; else in sequence
   text::TextWishes text;      ///< stops and numbers of blocks
-  std::optional<machines::PoleOption> pole;  ///< instead of post.pole of the machine file
-  std::optional<double> pole_angle_rad;      ///< instead of post.pole_angle
+  std::optional<double> contour_tolerance_mm;  ///< that the text allows the control; none: a share of what is left
+  std::optional<machines::PoleOption> pole;    ///< instead of post.pole of the machine file
+  std::optional<double> pole_angle_rad;        ///< instead of post.pole_angle
 };
 
 /// What the keys of [contact], and the options of `contact` in their place, may be.
@@ -61,6 +62,8 @@ inline constexpr toml::Range kPinionTeeth{5, 1000}, kMoved{-5, 5, " mm"}, kAngle
 inline constexpr toml::Range kTorque{1e-6, 1e9, " N m"};
 /// Numbers of programs: from 8000 on they are the builder's.
 inline constexpr toml::Range kProgramNumber{1, 7999};
+/// Contour tolerance of a program.
+inline constexpr toml::Range kContourTolerance{1e-4, 0.1, " mm"};
 /// Numbers of tools.
 inline constexpr toml::Range kToolNumber{1, 9999};
 

@@ -387,6 +387,7 @@ ProgramSettings read_program_settings(toml::TableReader& table) {
   program.text.stops = static_cast<text::Stops>(std::find(stops.begin(), stops.end(), stop) - stops.begin());
   if (table.word_or("stop_word", {"optional_stop", "block_skip"}, "optional_stop") == "block_skip")
     program.text.stop_word = text::StopWord::block_skip;
+  program.contour_tolerance_mm = table.optional_number("contour_tolerance", kContourTolerance);
   program.text.restart_numbers = table.boolean_or("restart_numbers", program.text.restart_numbers);
   constexpr std::pair<std::string_view, machines::PoleOption> kPoles[] = {
       {"error", machines::PoleOption::error}, {"tilt", machines::PoleOption::tilt},

@@ -18,7 +18,8 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t(1) << 30;
 constexpr double kLeastAxisBlend = 0.0001;  // deg: the last digit of a tolerance of the rotaries
-constexpr double kBlendShare = 0.15;        // of the gouge tolerance that the control may round corners by
+constexpr double kMostAxisBlend = 0.01;     // deg, where the contour tolerance is a share of what is left
+constexpr double kBlendShare = 0.15;        // of the gouge tolerance that the control may round corners by unasked
 
 /// The words of `pole`, in the order of PoleOption.
 constexpr const char* kPoleWords[] = {"error", "tilt", "hold", "through", "slow", "retract"};
@@ -61,6 +62,8 @@ report::RunReport report_of(const std::string& command, const job::Job& job, con
   if (!machine.post.smoothing_on.empty() && machine.post.smoothing_axis_tolerance_rad)
     report.assumed.push_back(fmt::format("{}: post.smoothing_axis_tolerance = {:g} deg", job.machine.file,
                                          degrees(*machine.post.smoothing_axis_tolerance_rad)));
+  if (const auto dialect = controls::dialect_of(machine); dialect && dialect->blend && !dialect->contour_trust.empty())
+    report.assumed.push_back(fmt::format("{}: contour deviation = {}", job.machine.file, dialect->contour_trust));
   report.warnings = job.warnings;
   report.warnings.insert(report.warnings.end(), gear_warnings.begin(), gear_warnings.end());
   return report;
@@ -140,7 +143,14 @@ void release_later_teeth(joints::AxisProgram& program) {
     }
 }
 
-text::NcHeader header_of(const PostRequest& request, const std::vector<std::string>& assumed, double radius) {
+/// Of the largest tool: a lean moves the centre of its ball by no more than a corner does.
+double largest_radius(const job::Job& job) {
+  double radius = 0;
+  for (const auto& tool : job.tools) radius = std::max(radius, tool.radius_mm());
+  return radius;
+}
+
+text::NcHeader header_of(const PostRequest& request, const std::vector<std::string>& assumed) {
   text::NcHeader header;
   header.job_name = request.title;
   header.machine_name = request.machine.name;
@@ -148,14 +158,51 @@ text::NcHeader header_of(const PostRequest& request, const std::vector<std::stri
   header.coolant = request.job.coolant;
   header.program_number = program_number(request.job);
   header.wishes = request.job.program.text;
-  header.blend_mm = std::min(header.blend_mm, kBlendShare * request.job.verify.gouge_tolerance_mm);
-  if (radius > 0)
-    header.blend_axis_deg =
-        std::max(kLeastAxisBlend, std::min(header.blend_axis_deg, degrees(header.blend_mm / (2 * radius))));
+  header.blend_mm = request.contour_mm.value_or(narrow_contour(request));
+  header.contour_granted = request.contour_mm.has_value();
+  if (const double radius = largest_radius(request.job); radius > 0) {
+    const double most = header.contour_granted ? kMostAxisBlend : header.blend_axis_deg;
+    header.blend_axis_deg = std::max(kLeastAxisBlend, std::min(most, degrees(header.blend_mm / (2 * radius))));
+  }
   return header;
 }
 
+double counted(const joints::AxisProgram& program, const text::NcDialect& dialect, const text::NcHeader& header,
+               double radius) {
+  return text::granted_blend_mm(program, dialect, header) + radius * text::granted_blend_rad(program, dialect, header);
+}
+
+/// The dialect of a request whose program was written, and its header with this tolerance.
+std::pair<text::NcDialect, text::NcHeader> words_with(PostRequest request, const std::optional<double>& contour_mm) {
+  request.contour_mm = contour_mm;
+  auto dialect = controls::dialect_of(request.machine);
+  return {dialect ? std::move(*dialect) : text::NcDialect{}, header_of(request, {})};
+}
+
 }  // namespace
+
+bool takes_contour(const machines::Machine& machine) {
+  const auto dialect = controls::dialect_of(machine);
+  return dialect && dialect->blend;
+}
+
+double narrow_contour(const PostRequest& request) {
+  return std::min(text::NcHeader{}.blend_mm, kBlendShare * request.job.verify.gouge_tolerance_mm);
+}
+
+double counted_contour(const PostRequest& request, const PostedProgram& posted, double contour_mm) {
+  const auto [dialect, header] = words_with(request, contour_mm);
+  return counted(posted.axes, dialect, header, largest_radius(request.job));
+}
+
+double first_teeth_minutes(const PostRequest& request, const PostedProgram& posted,
+                           const std::optional<double>& contour_mm) {
+  const auto [dialect, header] = words_with(request, contour_mm);
+  joints::AxisProgram program = posted.axes;
+  text::note_corners(program, dialect, header);
+  estimate_times(program, request.machine);
+  return program.accelerated.feed;
+}
 
 int program_number(const job::Job& job) {
   constexpr int kFirst = 1000, kStep = 100, kNames = 60;  // room for 1000 sub-programs behind the last
@@ -170,6 +217,12 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   const std::optional<joints::ProgramRestart>& restart = request.restart;
   const auto dialect = controls::dialect_of(machine);
   if (!dialect) return located(job, "machine.file", dialect.error());
+  if (job.program.contour_tolerance_mm && !dialect->blend)
+    return located(job, "program.contour_tolerance",
+                   fail("contour_tolerance: the text of \"{}\" says none{}", dialect->name,
+                        dialect->takes_smoothing || !dialect->corner_flow.empty()
+                            ? "; post.corner_tolerance and post.smoothing_* of the machine file state what it leaves"
+                            : ""));
   auto program = clock.run("axis program", [&] {
     joints::AxisOptions options = controls::axis_options(*dialect, machine);
     options.pack_teeth = true;
@@ -180,14 +233,13 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   PostedProgram posted;
   posted.axes = std::move(program.value());
 
-  double radius = 0;  // a lean of the tool moves the centre of its ball by no more than a corner does
-  for (const auto& tool : job.tools) radius = std::max(radius, tool.radius_mm());
-  const text::NcHeader header = header_of(request, assumed, radius);
+  const text::NcHeader header = header_of(request, assumed);
+  text::note_corners(posted.axes, *dialect, header);
+  if (posted.axes.corner_tolerance_mm > 0) estimate_times(posted.axes, machine);
   auto text = clock.run("NC text", [&] { return text::write_nc(posted.axes, *dialect, header); });
   if (!text) return located(job, "machine.file", text.error());
   posted.blocks = text->blocks;
-  posted.blend_mm =
-      text::granted_blend_mm(posted.axes, *dialect, header) + radius * granted_blend_rad(posted.axes, *dialect, header);
+  posted.blend_mm = counted(posted.axes, *dialect, header, largest_radius(job));
   posted.file = "program" + dialect->extension;
   posted.name_on_control = text::name_on_control(*dialect, header);
   std::string whole = std::move(text->text);

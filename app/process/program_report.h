@@ -53,7 +53,19 @@ struct PostRequest {
   int teeth = 0;
   joints::ClearanceBody body;                     ///< that links keep clear of
   std::optional<joints::ProgramRestart> restart;  ///< the file holds the program from there on
+  std::optional<double> contour_mm = {};          ///< that the control is granted; none: the narrow one
 };
+
+// The contour tolerance that a text allows its control. `posted`: written for the request, its first teeth are there.
+/// The control has words for it, and the machine file states no smoothing of its own.
+[[nodiscard]] bool takes_contour(const machines::Machine& machine);
+/// Granted without anybody's asking, mm.
+[[nodiscard]] double narrow_contour(const PostRequest& request);
+/// What the proof counts for it: the tip, and the centre of the largest ball where the rotaries may be off, mm.
+[[nodiscard]] double counted_contour(const PostRequest& request, const PostedProgram& posted, double contour_mm);
+/// Cutting time of the teeth that are held with this tolerance (none: the narrow one), min.
+[[nodiscard]] double first_teeth_minutes(const PostRequest& request, const PostedProgram& posted,
+                                         const std::optional<double>& contour_mm);
 /// O number of the job's program: its own, or one of 1000, 1100 .. 6900 by its name, so that two jobs on one control
 /// hardly ever share it.
 [[nodiscard]] int program_number(const job::Job& job);

@@ -129,6 +129,9 @@ constexpr Meaning kJobMeanings[] = {
     {"program", "Numbers and order of the program."},
     {"program.number", "O number of the program; left out: made of the job's name."},
     {"program.tooth_order", "Teeth one after the other, or neighbours apart in time."},
+    {"program.contour_tolerance",
+     "How far the text allows the control to leave the path (CYCLE832, cycle 32); counts in the proof. Left out: the "
+     "share of what is left of the gouge tolerance with which the time is least."},
     {"program.stop",
      "Ahead of what the operator may stop the program: of changes of the tool, of operations, of teeth too; proven as "
      "if it stopped."},

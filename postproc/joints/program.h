@@ -203,7 +203,8 @@ struct AxisProgram {
   double pole_axis_rad = 0;       ///< proven: handling poles moves the tool axis by no more ..
   double pole_tip_mm = 0;         ///< .. and the tip, about the centre of the ball, which stays
   bool has_acceleration = false;  ///< the machine states them: `accelerated` is filled in
-  timing::Corners corners = timing::Corners::jump;  ///< as in the options
+  timing::Corners corners = timing::Corners::jump;  ///< as in the options, or as the text says
+  double corner_tolerance_mm = 0;                   ///< of `round` and `way`
   std::string time_model;                           ///< what the times hold and assume
   TimedMinutes accelerated;                         ///< over all operations
   std::optional<choice::TravelOffer> offer;         ///< empty: not looked for, or too many directions of the part

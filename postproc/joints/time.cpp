@@ -59,12 +59,17 @@ class Walk {
   std::optional<Vec3> tip_;
 };
 
-std::vector<double> walk(Walk& place, const std::vector<AxisBlock>& blocks, timing::Corners corners,
+timing::PathControl control_of(const AxisProgram& program, const machines::Machine& machine) {
+  timing::PathControl control = timing::control_of(machine, program.corners);
+  control.tolerance_mm = program.corner_tolerance_mm;
+  return control;
+}
+
+std::vector<double> walk(Walk& place, const std::vector<AxisBlock>& blocks, const timing::PathControl& control,
                          const machines::Machine& machine) {
   std::vector<double> times;
   times.reserve(blocks.size());
-  timing::PathTimer timer(timing::limits_of(machine), timing::control_of(machine, corners),
-                          [&times](double minutes) { times.push_back(minutes); });
+  timing::PathTimer timer(timing::limits_of(machine), control, [&times](double minutes) { times.push_back(minutes); });
   for (const AxisBlock& b : blocks) {
     // The way of a link, and so its time, depends on where the tooth before has ended.
     const bool link =
@@ -76,13 +81,13 @@ std::vector<double> walk(Walk& place, const std::vector<AxisBlock>& blocks, timi
 }
 
 /// Z alone up to the height of tool changes, behind every operation.
-double retract(machines::Joints& at, double top_mm, timing::Corners corners, const machines::Machine& machine) {
+double retract(machines::Joints& at, double top_mm, const timing::PathControl& control,
+               const machines::Machine& machine) {
   const double way = top_mm - at.linear_mm.z();
   if (way <= 0) return 0;
   at.linear_mm.z() = top_mm;
   const timing::Block rise{{0, 0, way, 0, 0}, way / machine.chain.linear[2].max_speed, true};
-  return timing::times_of(std::span(&rise, 1), timing::limits_of(machine), timing::control_of(machine, corners))
-      .front();
+  return timing::times_of(std::span(&rise, 1), timing::limits_of(machine), control).front();
 }
 
 /// What the operation's rapids hold beside those of the blocks: the turns of the index, min.
@@ -111,14 +116,14 @@ std::size_t time_operation(AxisProgram& program, AxisOperation& op, std::optiona
     const std::vector<AxisBlock>& blocks = tooth.all(room);
     if (blocks.empty()) continue;
     place.stand(stands ? *stands : place.end_of(blocks.front()));
-    const auto first = walk(place, blocks, program.corners, machine);
+    const auto first = walk(place, blocks, control_of(program, machine), machine);
     auto times = first;
     if (copies > 1) {
       // In a loop the other teeth begin where the one before has ended, a pitch behind.
       machines::Joints behind = place.at();
       behind.rotary_rad[index_rotary] -= pitch_rad;
       place.stand(behind);
-      times = walk(place, blocks, program.corners, machine);
+      times = walk(place, blocks, control_of(program, machine), machine);
     }
     for (std::size_t i = 0; i < times.size(); ++i) {
       const AxisBlock& b = blocks[i];
@@ -131,7 +136,7 @@ std::size_t time_operation(AxisProgram& program, AxisOperation& op, std::optiona
     stands = place.at();
     stands->rotary_rad[index_rotary] += (copies - 1) * pitch_rad;
   }
-  if (stands) op.accelerated.rapid += retract(*stands, program.retract_z_mm, program.corners, machine);
+  if (stands) op.accelerated.rapid += retract(*stands, program.retract_z_mm, control_of(program, machine), machine);
   return ruled;
 }
 
@@ -142,7 +147,7 @@ std::vector<double> accelerated_times(const std::vector<AxisBlock>& blocks, cons
                                       const machines::Machine& machine) {
   Walk place(program, tool_length_mm, machine);
   place.stand(place.end_of(start));
-  return walk(place, blocks, program.corners, machine);
+  return walk(place, blocks, control_of(program, machine), machine);
 }
 
 void estimate_times(AxisProgram& program, const machines::Machine& machine) {

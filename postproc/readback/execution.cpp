@@ -243,6 +243,7 @@ bool NcExecution::site_smoothing(std::string_view line) {
   const bool on = is(control_.smoothing_on);
   if (line.empty() || (!on && !is(control_.smoothing_off))) return false;
   set_blend(on ? control_.smoothing_mm : 0);
+  if (timing::is_bounded(path_mode_)) set_path_mode(timing::Corners::jump, 0);
   blend_axis_rad_ = on ? control_.smoothing_axis_rad : std::nullopt;
   site_smoothing_ = on;
   return true;
@@ -507,6 +508,8 @@ NcExecution::Problem NcExecution::corners(const std::array<double, 5>& goal, con
   const bool turns = std::abs(goal[3] - joints_[3]) > kTipStill || std::abs(goal[4] - joints_[4]) > kTipStill;
   if (turns && blend_is_linear_)
     return "G64 bounds X, Y and Z alone, this G1 turns a rotary axis: G61 or G61.1 is needed";
+  if (turns && contour_cycle_ && !(tcp_ && blend_axis_rad_))
+    return "this block turns a rotary axis, and the tolerance of the cycle bounds X, Y and Z alone";
   if (turns && tcp_ && rules_.turns_need_axis_blend && !blend_axis_rad_)
     return "this block turns a rotary axis and no TA says how far the control may leave its way: CYCL DEF 32.2 is "
            "needed";

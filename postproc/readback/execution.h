@@ -97,9 +97,17 @@ class NcExecution {
   void set_blend(double mm, bool linear_only = false) {
     blend_mm_ = mm;
     blend_is_linear_ = linear_only;
+    contour_cycle_ = false;
     corner_way_.reset();
   }
-  /// LinuxCNC: how the path goes on at corners; P of G64.
+  /// A cycle bounds the tip, and with TCP each rotary where it says so; it bounds no rotary else.
+  void set_contour(double mm, std::optional<double> rad) {
+    set_blend(mm);
+    blend_axis_rad_ = rad;
+    contour_cycle_ = true;
+    set_path_mode(timing::Corners::round, mm);
+  }
+  /// How the path goes on at corners, where the text says it; P of G64, or the tolerance.
   void set_path_mode(timing::Corners corners, double tolerance_mm) {
     path_mode_ = corners;
     path_tolerance_mm_ = tolerance_mm;
@@ -108,6 +116,7 @@ class NcExecution {
   void set_corner_way(double mm) {
     set_blend(0);
     corner_way_ = mm;
+    set_path_mode(timing::Corners::way, mm);
   }
   /// What the way is measured over: mm for each mm or degree of an axis. Nothing: what the machine data say.
   void set_path_weights(std::optional<std::array<double, 5>> weights) { path_weights_ = weights; }
@@ -197,7 +206,7 @@ class NcExecution {
   timing::Corners path_mode_ = timing::Corners::exact;
   double path_tolerance_mm_ = 0;
   double blend_mm_ = 0;
-  bool blend_is_linear_ = false, site_smoothing_ = false;
+  bool blend_is_linear_ = false, site_smoothing_ = false, contour_cycle_ = false;
   std::optional<double> corner_way_, blend_axis_rad_;
   std::optional<std::array<double, 5>> path_weights_;
   bool spindle_ = false, spindle_set_ = false, retracted_ = false;

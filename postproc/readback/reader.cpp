@@ -300,6 +300,7 @@ class ReadBackRun {
       ++result_.executed;
       if (watch) watch(m);
       timer.add(m);
+      if (timing::is_bounded(m.corners) && !m.rapid) result_.corners = m.corners;
       const double minutes = m.minutes + double(m.dwell_min);
       result_.minutes += minutes;
       if (!m.rapid) result_.feed_minutes += minutes;

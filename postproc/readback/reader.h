@@ -89,8 +89,9 @@ struct ExecutedMove {
   std::int16_t operation = -1;  ///< from the (OP n type) comment; -1 before the first
   std::int16_t tool = 0;        ///< T in the spindle
   bool rapid = false;
-  std::uint8_t commanded = 0;                        ///< bit a: the block has a word for axis a
-  timing::Corners corners = timing::Corners::exact;  ///< LinuxCNC: the path mode, and P of G64 in tolerance_mm
+  std::uint8_t commanded = 0;  ///< bit a: the block has a word for axis a
+  /// The path mode where the text says it, with P of G64, T of cycle 32, ADIS in tolerance_mm.
+  timing::Corners corners = timing::Corners::exact;
   bool tcp = false;          ///< the tip goes straight to `tip`, the rotaries are linear, the other joints follow
   float blend_mm = 0;        ///< the control may leave the corners of the path by this much (G64 P)
   float blend_axis_rad = 0;  ///< the same of the tool axis (TA of cycle 32)

@@ -23,7 +23,9 @@ void RunTimer::add(const ExecutedMove& move) {
     if (plans_words_ && move.tcp && before_.tcp)
       for (int a = 0; a < 3; ++a) block.step[static_cast<std::size_t>(a)] = move.tip[a] - before_.tip[a];
   }
-  if (follows_ && !move.rapid) timer_.set_corners(move.corners, static_cast<double>(move.tolerance_mm));
+  const bool bounded = timing::is_bounded(move.corners);
+  if (!move.rapid && (follows_ || bounded)) timer_.set_corners(move.corners, static_cast<double>(move.tolerance_mm));
+  else if (!move.rapid) timer_.set_corners(timing::Corners::jump, 0);
   if (move.dwell_min > 0) timer_.finish();
   open_.push_back({move.rapid, double(move.dwell_min)});
   timer_.add(block);

@@ -48,11 +48,22 @@ CornerWords corner_words(const joints::AxisProgram& program, const NcDialect& di
     out.granted_rad = dialect.smoothing_axis_rad.value_or(0);
     return out;
   }
-  if (dialect.blend_is_way) return way_words(program, dialect, header);
-  if (dialect.blend_axis && program.tcp != machines::TcpMode::none)
+  const bool tcp = program.tcp != machines::TcpMode::none;
+  // Without TCP no word bounds a rotary that turns in a cut.
+  out.contour = header.contour_granted && !dialect.contour_on.empty() && (tcp || !program.turns_in_cuts);
+  if (dialect.blend_is_way && !out.contour) return way_words(program, dialect, header);
+  if (out.contour) out.blend_mm = rounded_down(header.blend_mm, kBlendDigits);
+  if ((dialect.blend_axis || out.contour) && tcp)
     out.granted_rad = rotaries_of(program) * radians(rounded_down(header.blend_axis_deg, kAxisDigits));
-  out.granted_mm = header.blend_mm;
+  out.granted_mm = out.blend_mm;
   return out;
+}
+
+void note_corners(joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
+  if (!dialect.blend) return;
+  const CornerWords words = corner_words(program, dialect, header);
+  program.corners = dialect.blend_is_way && !words.contour ? timing::Corners::way : timing::Corners::round;
+  program.corner_tolerance_mm = words.blend_mm;
 }
 
 double granted_blend_mm(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {

@@ -13,6 +13,7 @@ struct CornerWords {
   double granted_rad = 0;  ///< the tool axis leaves its blend by no more; 0 where it follows from the tip's own words
   bool group = false;      ///< the axes of the path are named
   double radius_mm = 0;    ///< with it: of every rotary
+  bool contour = false;    ///< by the lines `contour_on`
 };
 
 [[nodiscard]] CornerWords corner_words(const joints::AxisProgram& program, const NcDialect& dialect,

@@ -144,6 +144,11 @@ struct NcDialect {
   /// With it, where cuts turn a rotary without TCP: all {axes} are the path, a rotary {axis} at the {radius} mm; at the
   /// end none is named.
   std::string path_group, path_radius, path_group_end;
+  /// In place of the line with {blend} where the tolerance is a share of what the proof leaves: ahead of the teeth of
+  /// an operation and behind them; {finish} is one of `contour_finish`, without TCP and with it. Empty: the same line.
+  NcLinesOfText contour_on, contour_off;
+  std::array<std::string, 2> contour_finish{};
+  std::string contour_trust;     ///< what that trusts the control with, for those who list what is assumed
   bool blend_axis = false;       ///< `start` lets the control lean the tool by {blend_axis} deg while TCP is on
   bool takes_smoothing = false;  ///< the machine file may state lines that switch the control's own smoothing
   NcLinesOfText smoothing_on,

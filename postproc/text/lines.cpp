@@ -35,6 +35,9 @@ NcLines::Values program_values(const joints::AxisProgram& program, const NcDiale
   const CornerWords corners = corner_words(program, dialect, header);
   values["blend"] = unsigned_value(corners.blend_mm, 6);
   values["blend_axis"] = unsigned_value(std::floor(header.blend_axis_deg * 1e4 + 1e-6) * 1e-4, 4);
+  const bool tcp = program.tcp != machines::TcpMode::none;
+  const auto finish = expanded(dialect.contour_finish[tcp ? 1 : 0], values);
+  values["finish"] = finish.value_or("");
   values["radius"] = unsigned_value(corners.radius_mm, 0);
   for (const char letter : program.letters)
     if (letter != 0) values["axes"] += (values["axes"].empty() ? "" : ",") + std::string(1, letter);
@@ -79,6 +82,12 @@ std::vector<std::string> header_comments(const joints::AxisProgram& program, con
     numbers::append_fixed(product, 4 * corner, 6, false);
     out.push_back(fmt::format("CORNERS WITHIN {} MM: TOOL ACCELERATION X SERVO PERIOD SQUARED IS AT MOST {} MM", within,
                               product));
+  }
+  if (header.contour_granted) {
+    const CornerWords corners = corner_words(program, dialect, header);
+    std::string within;
+    numbers::append_fixed(within, numbers::to_fixed(corners.granted_mm, 6), 6, false);
+    out.push_back(fmt::format("CONTOUR TOLERANCE {} MM, A SHARE OF WHAT THE PROOF LEAVES", within));
   }
   if (dialect.corner_mm > 0) {
     std::string within;

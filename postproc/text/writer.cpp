@@ -65,8 +65,9 @@ class Writer {
       if (t == "{safe_start}") safe_start();
       else if (t == "{pick}") out_.fill(program_.tooth_stride == 1 ? NcLinesOfText{} : dialect_.loop.pick, values_);
       else if (t == "{first_tooth}") out_.comment(first_tooth_comment(program_));
-      else if (t.find("{blend}") != std::string::npos) corner_line(t);
-      else if (t == "{path_group_end}")
+      else if (t.find("{blend}") != std::string::npos) {
+        if (!corners_.contour) corner_line(t);
+      } else if (t == "{path_group_end}")
         out_.fill(corners_.group ? NcLinesOfText{dialect_.path_group_end} : NcLinesOfText{}, values_);
       else out_.fill({t}, values_);
   }
@@ -161,6 +162,7 @@ class Writer {
     forget();
     if (coolant_) out_.line(coolant_->on);
     for (const auto& line : dialect_.smoothing_on) out_.line(line);
+    if (corners_.contour) out_.fill(dialect_.contour_on, values_);
     if (!program_.loop) {
       std::size_t within = 0;
       for (const auto& tooth : op.teeth) {
@@ -181,6 +183,7 @@ class Writer {
     }
     for (const auto& line : dialect_.smoothing_off) out_.line(line);
     if (tilts_) fill(dialect_.planes.off);
+    if (corners_.contour) out_.fill(dialect_.contour_off, values_);
     fill(dialect_.operation_end);
     if (coolant_) out_.line(coolant_->off);
     fill(dialect_.spindle_off);

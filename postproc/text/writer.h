@@ -25,6 +25,7 @@ struct NcHeader {
       0.0003;  ///< how far the control may leave a corner: counts as deviation of the machine in every proof
   double blend_axis_deg =
       0.002;  ///< how far the control may turn a rotary off its way with TCP: counts as deviation of the tool axis
+  bool contour_granted = false;  ///< `blend_mm` is a share of what the proof leaves: the control's own cycle for it
   machines::Coolant coolant = machines::Coolant::off;  ///< with every operation
   TextWishes wishes;
 };
@@ -43,6 +44,9 @@ struct NcText {
 /// lets the axis do follows from the blocks and is counted by the reader alone.
 [[nodiscard]] double granted_blend_rad(const joints::AxisProgram& program, const NcDialect& dialect,
                                        const NcHeader& header);
+
+/// How the control joins the blocks of this text, for the times: into `corners` and `corner_tolerance_mm`.
+void note_corners(joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
 
 /// Prints the program. Errors: an F that the control cannot take, a line that is too long, a number out of its format,
 /// joint blocks that turn on a control without inverse time, teeth as a loop on a control that has none, sub-programs

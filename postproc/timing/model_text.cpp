@@ -16,6 +16,11 @@ std::string model_text(const machines::Machine& machine, Corners corners) {
                        control.period_min * 60000);
   if (control.corners == Corners::stop)
     return fmt::format("{}, a stop at every corner (G61), its wait for the position of the axes not counted", limits);
+  if (is_bounded(control.corners))
+    return fmt::format(
+        "{}, assumed: corners are parabolas within the contour tolerance of the text, or every axis jumps by what it "
+        "accelerates in {:g} ms (min_block_ms)",
+        limits, control.jump_min * 60000);
   return fmt::format("{}, assumed: at corners every axis may jump by what it accelerates in {:g} ms (min_block_ms)",
                      limits, control.jump_min * 60000);
 }

@@ -117,7 +117,8 @@ PathTimer::Piece PathTimer::piece_of(const Block& block) const {
 
 bool PathTimer::on_one_line(const Piece& a, const Piece& b) const {
   if (control_.corners == Corners::stop) return false;
-  if (control_.corners != Corners::jump && (turns(a.direction) || turns(b.direction))) return false;
+  if (control_.corners != Corners::jump && !is_bounded(control_.corners) && (turns(a.direction) || turns(b.direction)))
+    return false;
   for (const double d : difference(a.direction, b.direction))
     if (std::abs(d) > kOneLine) return false;
   return std::abs(a.limits.speed - b.limits.speed) <= kOneLine * a.limits.speed;
@@ -170,11 +171,26 @@ PathTimer::Corner PathTimer::corner_of(const Piece& a, const Piece& b) const {
     case Corners::stop: return {};
     case Corners::exact: return exact_corner(a, b);
     case Corners::blend: return blended_corner(a, b);
-    case Corners::jump: break;
+    default: return jumped_corner(a, b);
   }
+}
+
+/// A change of speed v D in the time v / r, r the quickest that the axes can, is a parabola. It begins and ends v^2 /
+/// 2r from the corner, which it passes at v^2 |D| / 8r; no more than half of a block is its own.
+PathTimer::Corner PathTimer::jumped_corner(const Piece& a, const Piece& b) const {
   const double least = std::min(a.limits.speed, b.limits.speed);
-  const double v =
-      std::min(least, control_.jump_min * along(limits_.acceleration, difference(a.direction, b.direction)));
+  const auto change = difference(a.direction, b.direction);
+  const double rate = along(limits_.acceleration, change);
+  double v = control_.jump_min * rate;
+  if (is_bounded(control_.corners) && control_.tolerance_mm > 0 && std::isfinite(rate)) {
+    double square = 0;
+    for (const double d : change) square += d * d;
+    const double within = control_.corners == Corners::way
+                              ? std::sqrt(2 * control_.tolerance_mm * rate)
+                              : std::sqrt(8 * control_.tolerance_mm * rate / std::sqrt(square));
+    v = std::max(v, std::min(within, std::sqrt(std::min(a.length, b.length) * rate)));
+  }
+  v = std::min(v, least);
   return {v < kLeastShare * least ? 0 : v, 0, 0};
 }
 

@@ -28,8 +28,15 @@ enum class Corners : std::uint8_t {
   exact,  ///< LinuxCNC's G61: a stop, but where no axis changes its speed by more than a tenth of what it can in a
           ///< period; where a rotary turns always a stop
   blend,  ///< LinuxCNC's G64 P: an arc or two parabolas within the tolerance; nothing where a rotary turns is exact
-  jump,   ///< the speed of every axis may jump by what it accelerates in one block time (Fanuc, Siemens and others)
+  jump,   ///< the speed of every axis may jump by what it accelerates in one block time (Fanuc and others)
+  round,  ///< a jump, or a parabola that leaves the corner by the tolerance at most (cycle 32, CYCLE832)
+  way,    ///< a jump, or a parabola that begins and ends within the tolerance of the corner (G641 ADIS)
 };
+
+/// How far the path leaves corners is a number of the text.
+[[nodiscard]] constexpr bool is_bounded(Corners corners) {
+  return corners == Corners::round || corners == Corners::way;
+}
 
 /// Axes X Y Z and the two rotaries in the machine's order; mm, deg, minutes. An axis that is not there: infinities.
 struct AxisLimits {
@@ -43,8 +50,8 @@ struct AxisLimits {
 struct PathControl {
   Corners corners = Corners::jump;
   double period_min = 0;     ///< of the controller; a path from stop to stop takes whole periods. 0: any time
-  double jump_min = 0;       ///< `jump`: the block time
-  double tolerance_mm = 0;   ///< `blend`: P
+  double jump_min = 0;       ///< `jump`, `round` and `way`: the block time
+  double tolerance_mm = 0;   ///< `blend`: P; `round`; `way`
   bool plans_words = false;  ///< with TCP the limits act on the words (tip and rotaries), not on the joints (LinuxCNC)
 };
 
@@ -85,6 +92,7 @@ class PathTimer {
   [[nodiscard]] Piece piece_of(const Block& block) const;
   [[nodiscard]] Corner corner_of(const Piece& a, const Piece& b) const;
   [[nodiscard]] Corner exact_corner(const Piece& a, const Piece& b) const;
+  [[nodiscard]] Corner jumped_corner(const Piece& a, const Piece& b) const;
   [[nodiscard]] Corner blended_corner(const Piece& a, const Piece& b) const;
   [[nodiscard]] bool on_one_line(const Piece& a, const Piece& b) const;
   void flush(double overlap_min);

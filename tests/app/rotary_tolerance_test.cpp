@@ -22,15 +22,15 @@ TEST(RotaryTolerance, ALargerOneTakesTheClearanceOfTheShank) {
   const std::string program = file_text(dir / "out/program.h");
 
   double least = 1;
-  for (const char* tolerance : {"TA0.002", "TA1"}) {
-    write_file(dir / "program.h", replaced(program, "TA0.002", tolerance));
+  for (const char* tolerance : {"TA0.01", "TA1"}) {
+    write_file(dir / "program.h", replaced(program, "TA0.01", tolerance));
     const auto check = run_program({"check", dir / "job.toml", dir / "program.h", "--out", dir / "checked"});
     const auto report = nlohmann::json::parse(file_text(dir / "checked/report.json"));
     const double clearance = report["clearance"]["least"];
     const bool told = report.dump().find("clearance of shank and holder") != std::string::npos;
     EXPECT_LT(clearance, least) << tolerance;
     least = clearance;
-    EXPECT_EQ(told, std::string(tolerance) != "TA0.002") << check.err;
+    EXPECT_EQ(told, std::string(tolerance) != "TA0.01") << check.err;
     EXPECT_EQ(check.exit_code == 0, !told) << check.err;
     if (told) {
       EXPECT_LT(clearance, 0.5);

@@ -125,6 +125,8 @@ Language siemens() {
              {"ROT|TRANS", "shift", "off"},
              {"TRANS [ABC]=R2", "shift", "on"},
              {"ROT Z=R3", "frame", "turned"},
+             {R"(CYCLE832\([0-9.]+,_(ORI_)?FINISH,[0-9.]+\))", "smoothing", "on"},
+             {R"(CYCLE832\(\))", "smoothing", "off"},
              {R"(R\d=.*)", "-", ""},
              {R"(FOR .*|ENDFOR)", "-", ""},
              {R"re(T="T\d+")re", "-", ""},

@@ -348,7 +348,7 @@ class SiemensWalker : public Walker {
   };
   bool words(const std::string& code) {
     static const std::regex harmless(
-        R"(G(?:17|40|90|93|94|54|60|641)|COMPOF|ORIWKS|ORIAXES|ADIS=.*|F[0-9.]+|S\d+|N\d+|M[0135789])");
+        R"(G(?:17|40|90|93|94|54|60|641)|COMPOF|ORIWKS|ORIAXES|CYCLE832\(.*\)|ADIS=.*|F[0-9.]+|S\d+|N\d+|M[0135789])");
     std::istringstream in(code);
     std::array<double, 3> direction{};
     int said = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/process/cutting_force.h"
+#include "app/process/flow/contour.h"
 #include "app/process/flow/machine_moves.h"
 #include "app/process/flow/machine_picture.h"
 #include "app/process/flow/registry.h"
@@ -66,53 +67,116 @@ void keep_proof(Run& run, const proof::ProofLimits& limits, process::ProgramProo
       sheet::length_tolerances(run.job, limits, run.report, paths, run.surface, run.milling->beside_the_grid());
 }
 
-/// Axis program, NC text on the disk, proof of those bytes. Nothing: done, and `report.reasons` says whether it is
-/// safe.
-std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& limits, app::OutputDir& output) {
-  const process::GearProcess& gear = *run.gear.process;
-  const auto paths = run.paths();
-  auto posted = process::post_program(run.checked,
-                                      {run.job, run.job.name + (run.gear.correction ? ", corrected" : ""), run.machine,
-                                       gear.part().teeth, gear.link_body(run.machine), run.restart},
-                                      run.report.assumed, output, run.clock);
-  if (!posted) return posted.error();
-  const joints::AxisProgram& program = posted->axes;
-  process::note_axis_program(run.report, run.job, run.machine, paths, posted->restarted ? *posted->restarted : program);
-  run.report.blocks = posted->blocks;
+/// A program that was written and what the proof of its bytes says.
+struct Attempt {
+  process::PostedProgram posted;
+  process::ProgramProof proof;
+  page::SceneStates states;
+};
 
-  const std::vector<const path::ClPath*> asked = process::paths_to_meet(program, paths);
-  const std::string file = output.final_path(posted->file);
-  auto bodies = bodies_in_machine(run.job, run.machine, gear, nullptr);
-  if (!bodies) return bodies.error();
-  bodies::MovesJudge moves = judge_of(run.machine, std::move(*bodies), run.job, limits.clearance_mm);
-  page::StateRecorder states = recorder_of(run.job, gear.part().teeth);
-  const process::ProgramText whole{posted->text, file,   run.job,
-                                   run.machine,  &moves, [&](const readback::ExecutedMove& move) { states.add(move); }};
-  auto proof = process::prove_program(
-      whole, {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad},
-      run.milling->check(), run.clock);
-  if (!proof) {
-    Diagnostic error = proof.error();
-    error.kind = DiagnosticKind::verification;  // our own program must be readable
-    return error;
+/// The posts and proofs of one run.
+class Attempts {
+ public:
+  Attempts(Run& run, const proof::ProofLimits& limits, app::OutputDir& output)
+      : run_(run),
+        limits_(limits),
+        output_(output),
+        request_{run.job,
+                 run.job.name + (run.gear.correction ? ", corrected" : ""),
+                 run.machine,
+                 run.gear.process->part().teeth,
+                 run.gear.process->link_body(run.machine),
+                 run.restart} {
+    request_.contour_mm = run.job.program.contour_tolerance_mm;
   }
-  keep_proof(run, limits, *proof, paths, states.finish(proof->read));
-  if (auto done = note_restart(run.report, *posted, whole, run.milling->check(), run.lines, run.clock); !done)
+
+  /// Axis program, NC text on the disk, proof of those bytes, with this contour tolerance.
+  Result<Attempt> make(const std::optional<double>& contour_mm) {
+    request_.contour_mm = contour_mm;
+    auto posted = process::post_program(run_.checked, request_, run_.report.assumed, output_, run_.clock);
+    if (!posted) return posted.error();
+    auto bodies = bodies_in_machine(run_.job, run_.machine, *run_.gear.process, nullptr);
+    if (!bodies) return bodies.error();
+    bodies::MovesJudge moves = judge_of(run_.machine, std::move(*bodies), run_.job, limits_.clearance_mm);
+    page::StateRecorder states = recorder_of(run_.job, request_.teeth);
+    const joints::AxisProgram& program = posted->axes;
+    const std::string file = output_.final_path(posted->file);
+    const std::vector<const path::ClPath*> asked = process::paths_to_meet(program, run_.paths());
+    const process::ProgramText whole{posted->text, file,
+                                     run_.job,     run_.machine,
+                                     &moves,       [&](const readback::ExecutedMove& move) { states.add(move); }};
+    auto proof = process::prove_program(
+        whole,
+        {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad},
+        run_.milling->check(), run_.clock);
+    if (!proof) {
+      Diagnostic error = proof.error();
+      error.kind = DiagnosticKind::verification;  // our own program must be readable
+      return error;
+    }
+    auto told = states.finish(proof->read);
+    return Attempt{std::move(*posted), std::move(*proof), std::move(told)};
+  }
+
+  /// What the job asks for, or what is left of the tolerance: the text that takes the least time.
+  Result<Attempt> best() {
+    const auto asked = run_.job.program.contour_tolerance_mm;
+    std::optional<double> granted;
+    {
+      auto narrow = make(asked);
+      if (!narrow || asked || !narrow->proof.reasons.empty()) return narrow;
+      granted = contour_to_grant(request_, narrow->posted, limits_.gouge_mm - narrow->proof.gouge.bound_mm);
+      if (!granted) return narrow;
+    }
+    auto wide = make(granted);
+    if (wide && wide->proof.reasons.empty()) return wide;
+    return make(std::nullopt);
+  }
+  /// Why the tolerance of the job is too wide; nothing: it is not.
+  [[nodiscard]] std::optional<Diagnostic> refusal(const Attempt& made) const {
+    const double over = made.proof.gouge.bound_mm - limits_.gouge_mm;
+    if (!run_.job.program.contour_tolerance_mm || !(over > 0)) return std::nullopt;
+    return contour_refusal(request_, made.posted, over);
+  }
+
+ private:
+  Run& run_;
+  const proof::ProofLimits& limits_;
+  app::OutputDir& output_;
+  process::PostRequest request_;
+};
+
+/// The program of the run, proven. Nothing: done, and `report.reasons` says whether it is safe.
+std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& limits, app::OutputDir& output) {
+  const auto paths = run.paths();
+  Attempts attempts(run, limits, output);
+  auto made = attempts.best();
+  if (!made) return made.error();
+  process::PostedProgram& posted = made->posted;
+  process::ProgramProof& proof = made->proof;
+  const joints::AxisProgram& program = posted.axes;
+  process::note_axis_program(run.report, run.job, run.machine, paths, posted.restarted ? *posted.restarted : program);
+  run.report.blocks = posted.blocks;
+  const std::vector<const path::ClPath*> asked = process::paths_to_meet(program, paths);
+  keep_proof(run, limits, proof, paths, std::move(made->states));
+  const std::string file = output.final_path(posted.file);
+  const process::ProgramText whole{posted.text, file, run.job, run.machine};
+  if (auto done = note_restart(run.report, posted, whole, run.milling->check(), run.lines, run.clock); !done)
     return done.error();
-  run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);
-  run.report.ledger = run.milling->ledger(program, *proof, posted->blend_mm);
+  run.program_text = std::move(posted.restarted ? posted.restart_text : posted.text);
+  run.report.ledger = run.milling->ledger(program, proof, posted.blend_mm);
   process::note_cutting_forces(run.report, run.job);
-  run.report.sections = sections::sections_of(
-      {run.job, run.machine, run.report, posted->restarted ? *posted->restarted : program, paths});
+  run.report.sections =
+      sections::sections_of({run.job, run.machine, run.report, posted.restarted ? *posted.restarted : program, paths});
   if (!run.report.reasons.empty()) {
     if (run.report.gouge)
       for (std::string& help :
            process::what_would_help(run.report.ledger, *run.report.gouge, run.report.gouge_tolerance_mm))
         run.report.would_help.push_back(std::move(help));
-    return std::nullopt;
+    return attempts.refusal(*made);
   }
-  process::note_verified(run.report, posted->file, run.program_text);
-  run.report.name_on_control = posted->name_on_control;
+  process::note_verified(run.report, posted.file, run.program_text);
+  run.report.name_on_control = posted.name_on_control;
   return std::nullopt;
 }
 

@@ -43,6 +43,7 @@ text::NcDialect words() {
   d.own_m = {{0, 6}, {13, 14}, {19, 19}, {30, 30}, {89, 299}};
   d.end = {"CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1", "M127"};
   d.blend = d.blend_axis = true;
+  d.contour_trust = "what cycle 32 says, by the manuals";
   d.tcp_on = {"FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"};
   d.tcp_off = {"FUNCTION RESET TCPM"};
   d.vector_words = {"TX", "TY", "TZ"};

@@ -335,6 +335,7 @@ class Heidenhain {
         blend = *v;
       }
       execution_.set_blend(blend);
+      execution_.set_path_mode(blend > 0 ? timing::Corners::round : timing::Corners::jump, blend);
       execution_.set_blend_axis({});  // the block that follows may say it
       return std::nullopt;
     }

@@ -1,10 +1,11 @@
 // Siemens 840D sl. TRAORI and TRAFOOF may drop the frames (machine data 10602), so that the work offset stands behind
 // each of them. TRANS lets the words of the index rotary count from the angle of the tooth. G641 ADIS is the way ahead
 // of and behind a corner within which the axes may leave the path; where cuts turn a rotary the text names the axes
-// whose travel is the way. The compressor stays off. The teeth run in a FOR loop of the control; with TRAORI the
-// programmable frame ROT turns with them. MOD is for whole variables only there, so that the remainder of the spread
-// order is made with TRUNC, half a unit away from where it could fall on the wrong side. ORIAXES: the rotaries are
-// linear between the blocks, also where a block carries the tool vector A3 B3 C3.
+// whose travel is the way, and the compressor stays off. Where the proof leaves room CYCLE832 takes its place, with its
+// compressor: its tolerances bound the tip, and with TRAORI the rotaries. The teeth run in a FOR loop of the control;
+// with TRAORI the programmable frame ROT turns with them. MOD is for whole variables only there, so that the remainder
+// of the spread order is made with TRUNC, half a unit away from where it could fall on the wrong side. ORIAXES: the
+// rotaries are linear between the blocks, also where a block carries the tool vector A3 B3 C3.
 #include "postproc/controls/control.h"
 #include "postproc/controls/siemens/siemens_reader.h"
 #include "postproc/controls/work_offset.h"
@@ -34,7 +35,11 @@ text::NcDialect words() {
   d.end = {"G60", "{path_group_end}"};
   d.frame_end = {"M30"};
   d.blend = d.blend_is_way = true;
-  d.takes_smoothing = true;  // CYCLE832 in place of G641
+  d.takes_smoothing = true;  // lines of the shop in place of G641
+  d.contour_on = {"CYCLE832({blend},{finish})"};
+  d.contour_off = {"CYCLE832()", "G60"};
+  d.contour_finish = {"_FINISH,1", "_ORI_FINISH,{blend_axis}"};
+  d.contour_trust = "what G641 and CYCLE832 say, by the manuals";
   d.path_group = "FGROUP({axes})";
   d.path_radius = "FGREF[{axis}]={radius}";
   d.path_group_end = "FGROUP()";

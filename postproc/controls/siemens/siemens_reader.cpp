@@ -171,6 +171,7 @@ class Siemens {
     if (s.done() || execution_.site_smoothing(text)) return std::nullopt;
     if (s.take("FOR ")) return loop_head(s);
     if (s.take("ENDFOR")) return loop_end(s);
+    if (s.take("CYCLE832(")) return contour_cycle(s);
     if (s.at() == 'R' && readback::NcScanner::is_digit(s.ahead())) {
       const auto n = parameter_number(s);
       if (!n || !s.take("=")) return here(1, "an R parameter must be set with =");
@@ -194,6 +195,29 @@ class Siemens {
     if (r.dwell) return dwell(r, words);
     if (r.g75) return fixed_point(r, words);
     return apply(r);
+  }
+  /// CYCLE832(tolerance,_FINISH,1) and CYCLE832(tolerance,_ORI_FINISH,degrees); CYCLE832() ends it, and how far corners
+  /// are left behind it must be said.
+  Problem contour_cycle(readback::NcScanner& s) {
+    const int column = s.column();
+    if (s.take(")")) {
+      execution_.set_blend(0);
+      execution_.set_blend_axis({});
+      corners_said_ = false;
+      return s.done() ? Problem{} : here(s.column(), "words behind CYCLE832()");
+    }
+    const auto mm = s.number();
+    if (!mm || !(*mm > 0)) return here(column, "CYCLE832 needs a tolerance above 0");
+    double deg = 0;
+    const bool plain = s.take(",_FINISH,1)");
+    if (!plain && s.take(",_ORI_FINISH,"))
+      if (const auto given = s.number(); given && s.take(")")) deg = *given;
+    if (!plain && !(deg > 0 && deg <= 10))
+      return here(s.column(), "_FINISH,1 or _ORI_FINISH and its tolerance, up to 10 deg, expected");
+    if (!s.done()) return here(s.column(), "words behind CYCLE832");
+    execution_.set_contour(*mm, plain ? std::nullopt : std::optional(radians(deg)));
+    corners_said_ = true;
+    return std::nullopt;
   }
   /// A block that may be left out must not matter: with others the text would be two programs.
   Problem skippable(const Request& r, int words) const {
@@ -499,6 +523,9 @@ class Siemens {
     if (r.adis.has_value() != r.g641) return here(r.column, "G641 and ADIS belong together");
     if (r.g641) execution_.set_corner_way(*r.adis);
     if (r.g60) execution_.set_blend(0);
+    if (r.g60) execution_.set_path_mode(timing::Corners::stop, 0);
+    if (r.g641 || r.g60) execution_.set_blend_axis({});
+    corners_said_ = corners_said_ || r.g641 || r.g60;
     if (r.feed_mode == 93) execution_.set_feed_mode(readback::NcExecution::Feed::inverse_time);
     if (r.feed_mode == 94) execution_.set_feed_mode(readback::NcExecution::Feed::per_minute);
     if (r.f)
@@ -558,6 +585,10 @@ class Siemens {
     }
     if (motion_ < 0) return here(r.column, "axis word before G0 or G1");
     if (r.supa && motion_ != 0) return here(r.column, "SUPA with G1");
+    if (motion_ == 1 && !corners_said_)
+      return here(r.column,
+                  "G1 behind CYCLE832() without G60, G641 or another CYCLE832: how far the control leaves corners is "
+                  "not said");
     r.move.rapid = motion_ == 0;
     r.move.machine_frame = r.supa;
     r.move.own_feed = r.f.has_value();
@@ -576,6 +607,7 @@ class Siemens {
   NcPathGroup path_;
   int motion_ = -1, tool_ = -1;
   bool ended_ = false;
+  bool corners_said_ = true;  // since CYCLE832() was left
 };
 
 }  // namespace

@@ -366,11 +366,99 @@ TEST_P(StatedSmoothing, IsWrittenAndCountedAsStated) {
   EXPECT_NE(error, "");
   machines::Machine plain = machine_for(s.dialect, s.tcp);
   (void)moves_of(text->text, plain, error);
-  EXPECT_NE(error, "");
+  const bool says_itself = std::string(s.on).find("_ORI_FINISH") != std::string::npos;
+  EXPECT_EQ(error == "", says_itself) << error;
   // Read with a statement that lacks the tool axis.
   m.post.smoothing_axis_tolerance_rad.reset();
   (void)moves_of(text->text, m, error);
   EXPECT_NE(error.find("without post.smoothing_axis_tolerance"), std::string::npos) << error;
+}
+
+// A granted contour tolerance in the words of the control, as the writer grants it and the reader counts it.
+struct Granted {
+  const char* dialect;
+  machines::TcpMode tcp;
+  double swing;
+  const char* words;  ///< regular expression
+};
+void PrintTo(const Granted& g, std::ostream* out) {
+  *out << g.dialect << (g.tcp == machines::TcpMode::none ? "" : "_tcp") << (g.swing == 0 ? "" : "_turning");
+}
+class ContourTolerance : public testing::TestWithParam<Granted> {};
+INSTANTIATE_TEST_SUITE_P(
+    Controls, ContourTolerance,
+    testing::Values(
+        Granted{"siemens", machines::TcpMode::none, 0, R"(CYCLE832\(0\.0025,_FINISH,1\)\n)"},
+        Granted{"siemens", machines::TcpMode::none, 0.3, R"(FGROUP\(.*\n(FGREF.*\n)+G641 ADIS=0\.001\d+\n)"},
+        Granted{"siemens", machines::TcpMode::angles, 0.3, R"(CYCLE832\(0\.0025,_ORI_FINISH,0\.008\)\n)"},
+        Granted{"siemens", machines::TcpMode::vectors, 0.3, R"(CYCLE832\(0\.0025,_ORI_FINISH,0\.008\)\n)"},
+        Granted{"heidenhain", machines::TcpMode::angles, 0.3, R"(CYCL DEF 32\.1 T0\.0025\n.*HSC-MODE:0 TA0\.008\n)"},
+        Granted{"heidenhain", machines::TcpMode::none, 0, R"(CYCL DEF 32\.1 T0\.0025\n)"}));
+
+TEST_P(ContourTolerance, IsWrittenAndCounted) {
+  const Granted& g = GetParam();
+  const machines::Machine m = machine_for(g.dialect, g.tcp);
+  const auto dialect = controls::dialect_of(m);
+  const auto p = axis_program({sample_path(0.3, g.swing, 6), sample_path(0.3, g.swing, 4, 1)}, m, standing(), 2, true);
+  ASSERT_TRUE(p) << p.error().message;
+  text::NcHeader header;
+  header.blend_mm = 0.0025;
+  header.blend_axis_deg = 0.008;
+  header.contour_granted = true;
+  const auto text = write_nc(*p, *dialect, header);
+  ASSERT_TRUE(text) << text.error().message;
+  EXPECT_TRUE(std::regex_search(text->text, std::regex(g.words))) << text->text.substr(0, 1500);
+  EXPECT_NE(text->text.find("CONTOUR TOLERANCE 0.002"), std::string::npos);
+  const double granted = text::granted_blend_mm(*p, *dialect, header);
+  EXPECT_LE(granted, 0.0025 + 1e-12);
+  EXPECT_GT(granted, 0.0022);
+  std::string error;
+  const auto moves = moves_of(text->text, m, error);
+  ASSERT_EQ(error, "");
+  joints::AxisProgram timed = *p;
+  text::note_corners(timed, *dialect, header);
+  const bool way = text->text.find("G641") != std::string::npos;
+  EXPECT_EQ(timed.corners, way ? timing::Corners::way : timing::Corners::round);
+  std::size_t cuts = 0;
+  for (const auto& e : moves) {
+    if (e.rapid) continue;
+    ++cuts;
+    EXPECT_EQ(e.corners, timed.corners);
+    EXPECT_FLOAT_EQ(e.tolerance_mm, static_cast<float>(timed.corner_tolerance_mm));
+    if (!way) { EXPECT_FLOAT_EQ(e.blend_mm, 0.0025F); }
+    if (g.tcp != machines::TcpMode::none) {
+      EXPECT_FLOAT_EQ(e.blend_axis_rad, static_cast<float>(text::granted_blend_rad(*p, *dialect, header)));
+      EXPECT_NEAR(e.blend_axis_rad, 2 * radians(0.008), 1e-8);
+    }
+  }
+  EXPECT_GT(cuts, 20U);
+  double least = 1;
+  for (const auto& motion : motions_of(moves, m))
+    if (!motion.rapid) least = std::min(least, motion.deviation_mm);
+  if (!way) { EXPECT_GE(least, 0.0025 * (1 - 1e-6)); }
+}
+
+// What the text must say for it.
+TEST(ContourTolerance, IsRefusedWhereItSaysTooLittle) {
+  const machines::Machine m = machine_for("siemens", machines::TcpMode::angles);
+  const auto p = axis_program({sample_path(0.3, 0.3, 6)}, m, standing(), 1);
+  ASSERT_TRUE(p);
+  text::NcHeader header;
+  header.blend_mm = 0.0025;
+  header.contour_granted = true;
+  const std::string text = write_nc(*p, *controls::dialect_of(m), header)->text;
+  const auto refusal = [&](const std::string& what, const std::string& by) {
+    std::string error;
+    (void)moves_of(regex_replaced(text, what, by), m, error);
+    return error;
+  };
+  EXPECT_EQ(refusal("x{9}", ""), "");
+  EXPECT_NE(refusal("_ORI_FINISH,0.002", "_FINISH,1").find("bounds X, Y and Z alone"), std::string::npos);
+  EXPECT_NE(refusal("_ORI_FINISH", "_ORI_ROUGH").find("_FINISH,1 or _ORI_FINISH"), std::string::npos);
+  EXPECT_NE(refusal("CYCLE832\\(0.0025", "CYCLE832(0").find("a tolerance above 0"), std::string::npos);
+  EXPECT_NE(refusal("CYCLE832\\(0.0025[^\n]*\n", "CYCLE832()\n").find("how far the control leaves corners"),
+            std::string::npos);
+  EXPECT_NE(refusal(",0.002\\)", ",11)").find("up to 10 deg"), std::string::npos);
 }
 
 TEST(StatedSmoothingKeys, NeedItsBoundAndADialectWithoutItsOwn) {

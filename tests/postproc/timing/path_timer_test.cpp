@@ -85,6 +85,52 @@ TEST(PathTimer, BlendedCorner) {
   }
 }
 
+// A corner of 90 deg that is rounded by a parabola: with the change of direction D it takes v / a, leaves the corner by
+// v^2 |D| / 8a, and begins v^2 / 2a ahead of it. Followed in small steps it does.
+TEST(PathTimer, CornersWithinATolerance) {
+  const double v = 100, a = 1000, way = 40, size = std::sqrt(2.0);
+  const std::vector<Block> blocks = {block({way, 0, 0, 0, 0}, v), block({0, way, 0, 0, 0}, v)};
+  const auto expected = [&](double c) {
+    return 2 * (v / a + (v - c) / a + (way - v * v / (2 * a) - (v * v - c * c) / (2 * a)) / v);
+  };
+  const auto control = [](Corners corners, double mm) {
+    PathControl out = jumping(1e-6);
+    out.corners = corners;
+    out.tolerance_mm = mm;
+    return out;
+  };
+  for (const double mm : {0.001, 0.02}) {
+    const double round = std::sqrt(8 * mm * a / size), within = std::sqrt(2 * mm * a);
+    EXPECT_NEAR(seconds(blocks, limits(a), control(Corners::round, mm)), expected(round), 1e-9);
+    EXPECT_NEAR(seconds(blocks, limits(a), control(Corners::way, mm)), expected(within), 1e-9);
+    // From (-s, 0) with (c, 0) to (0, s) with (0, c): the nearest point to the corner.
+    const double time = round / a, s = round * time / 2;
+    double nearest = 1e9;
+    for (int i = 0; i <= 10000; ++i) {
+      const double t = time * i / 10000;
+      nearest = std::min(nearest, std::hypot(-s + round * t - a * t * t / 2, a * t * t / 2));
+    }
+    EXPECT_NEAR(nearest, mm, 1e-9);
+  }
+  // None is the jump, more takes less time, and no more than half of a block is rounded.
+  double before = seconds(blocks, limits(a), jumping(1e-6));
+  EXPECT_EQ(seconds(blocks, limits(a), control(Corners::round, 0)), before);
+  for (const double mm : {1e-4, 1e-3, 1e-2}) {
+    const double now = seconds(blocks, limits(a), control(Corners::round, mm));
+    EXPECT_LT(now, before);
+    before = now;
+  }
+  const std::vector<Block> small = {block({0.01, 0, 0, 0, 0}, v), block({0, 0.01, 0, 0, 0}, v)};
+  const double half = std::sqrt(0.01 * a), most = std::sqrt(0.01 * a + half * half / 2);
+  EXPECT_NEAR(seconds(small, limits(a), control(Corners::round, 10)), 2 * (2 * most - half) / a, 1e-9);
+  // A jump that is greater than what the tolerance lets pass stays.
+  PathControl jumps = jumping(10);
+  const double jumped = seconds(blocks, limits(a), jumps);
+  jumps.corners = Corners::round;
+  jumps.tolerance_mm = 1e-5;
+  EXPECT_EQ(seconds(blocks, limits(a), jumps), jumped);
+}
+
 // Two blocks that turn under G64: each has half of its acceleration, and the second begins when the first has braked to
 // the speed that keeps the tolerance.
 TEST(PathTimer, BlendOfTurningBlocks) {
