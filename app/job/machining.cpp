@@ -388,6 +388,7 @@ ProgramSettings read_program_settings(toml::TableReader& table) {
   if (table.word_or("stop_word", {"optional_stop", "block_skip"}, "optional_stop") == "block_skip")
     program.text.stop_word = text::StopWord::block_skip;
   program.text.restart_numbers = table.boolean_or("restart_numbers", program.text.restart_numbers);
+  program.tilted_planes = table.boolean_or("tilted_planes", program.tilted_planes);
   constexpr std::pair<std::string_view, machines::PoleOption> kPoles[] = {
       {"error", machines::PoleOption::error}, {"tilt", machines::PoleOption::tilt},
       {"hold", machines::PoleOption::hold},   {"through", machines::PoleOption::through},

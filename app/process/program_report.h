@@ -53,6 +53,8 @@ struct PostRequest {
   int teeth = 0;
   joints::ClearanceBody body;                     ///< that links keep clear of
   std::optional<joints::ProgramRestart> restart;  ///< the file holds the program from there on
+  std::optional<joints::GraphicsBlank> blank =
+      std::nullopt;  ///< nothing: the part does not stand on Z of the work offset
 };
 /// O number of the job's program: its own, or one of 1000, 1100 .. 6900 by its name, so that two jobs on one control
 /// hardly ever share it.

@@ -87,6 +87,8 @@ class NcExecution {
   Problem dwell_turns(double turns);
   /// A word that switches a coolant on or off; one that belongs to none changes nothing.
   void switch_coolant(std::string_view word);
+  /// A word of the builder that clamps a rotary or releases it. @returns it is one
+  bool switch_clamp(std::string_view word);
   Problem select_offset(const std::string& name);
   Problem set_length(int tool);  ///< tool length compensation with the length of this tool
   void drop_length() { length_.reset(); }
@@ -149,6 +151,7 @@ class NcExecution {
   Problem move_to(const Move& m, std::int32_t line);
   Problem roll(Move& m);
   [[nodiscard]] bool at_zero(std::size_t axis) const;
+  Problem clamps_allow(const std::array<double, 5>& goal, std::uint8_t commanded) const;
   Problem goal_of(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const;
   Problem tip_goal(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const;
   Problem plane_goal(const Move& m, std::array<double, 5>& joints, std::uint8_t& commanded) const;
@@ -191,6 +194,8 @@ class NcExecution {
   double speed_ = 0;    // S, 1/min
   int length_of_ = -1;  // the tool whose length counts
   std::uint8_t coolants_ = 0;
+  enum class Clamp : std::uint8_t { unknown, released, clamped };
+  std::array<Clamp, 5> clamps_{};
   enum class Distance : std::uint8_t { unsaid, absolute, incremental } distance_ = Distance::unsaid;
   bool unit_ = false;
   bool spindle_doubt_ = false, coolant_doubt_ = false;  ///< a stop may have ended them

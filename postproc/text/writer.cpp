@@ -12,6 +12,7 @@
 #include "postproc/numbers/comment.h"
 #include "postproc/numbers/fixed_point.h"
 #include "postproc/text/axis_words.h"
+#include "postproc/text/clamps.h"
 #include "postproc/text/corners.h"
 #include "postproc/text/lines.h"
 #include "postproc/text/planes.h"
@@ -24,6 +25,7 @@ constexpr int kLastProgram = 7999;  // O numbers from 8000 on are the builder's
 constexpr int kFirstLabel = 100;
 constexpr int kNumbersOfOperation = 1000;  // N words: of the operation, then of its teeth
 constexpr int kVectorDecimals = 8;
+constexpr int kBlankDecimals = 3;
 
 class Writer {
  public:
@@ -35,6 +37,7 @@ class Writer {
         out_(dialect),
         words_(program, dialect, out_),
         planes_(program, dialect, out_),
+        clamps_(program, dialect, header.wishes.stops == Stops::teeth),
         tcp_(program.tcp != machines::TcpMode::none) {}
 
   Result<NcText> write() {
@@ -45,6 +48,7 @@ class Writer {
     }
     values_ = program_values(program_, dialect_, header_);
     values_["top"] = linear(program_.retract_z_mm);
+    blank();
     fill(dialect_.start);
     fill(dialect_.own_start);
     for (std::size_t i = 0; i < program_.operations.size(); ++i) {
@@ -87,8 +91,34 @@ class Writer {
       }
     out_.fill({pattern}, values_);
   }
+  /// The blank of the graphics.
+  void blank() {
+    if (dialect_.blank.empty()) return;
+    if (!header_.blank) {
+      if (!header_.no_blank.empty()) out_.comment(numbers::comment_text(header_.no_blank));
+      return;
+    }
+    const joints::GraphicsBlank& b = *header_.blank;
+    const auto scaled = [](double mm) { return numbers::to_fixed(mm, kBlankDecimals); };
+    const auto size = [&](const char* name, std::int64_t v) {
+      values_[name].clear();
+      numbers::append_fixed(values_[name], v, kBlankDecimals, dialect_.point_always);
+    };
+    const std::int64_t top = scaled(b.top_mm), bottom = scaled(b.bottom_mm);
+    values_["blank_top"] = out_.value(top, kBlankDecimals);
+    values_["blank_bottom"] = out_.value(bottom, kBlankDecimals);
+    size("blank_length", top - bottom);
+    size("blank_radius", scaled(b.radius_mm));
+    size("blank_diameter", 2 * scaled(b.radius_mm));
+    size("bore_radius", scaled(b.bore_mm));
+    size("bore_diameter", 2 * scaled(b.bore_mm));
+    fill(b.bore_mm > 0 ? dialect_.blank_ring : dialect_.blank);
+  }
   std::string linear(double mm) const {
     return out_.value(numbers::to_fixed(mm, program_.format.linear_decimals), program_.format.linear_decimals);
+  }
+  void print(const std::vector<std::string>& lines) {
+    for (const auto& line : lines) out_.line(line);
   }
   void forget() {
     words_.forget();
@@ -109,6 +139,7 @@ class Writer {
   }
   /// Lines of the shop behind a tooth, and a stop; what the stop may have ended is switched on again.
   void behind_tooth() {
+    clamps_.leave();
     fill(dialect_.own_between_teeth);
     if (header_.wishes.stops != Stops::teeth) return;
     stop();
@@ -153,7 +184,8 @@ class Writer {
     fill(tcp_ ? dialect_.tcp_compensation : dialect_.compensation);
     forget();
     if (coolant_) out_.line(coolant_->on);
-    for (const auto& line : dialect_.smoothing_on) out_.line(line);
+    print(dialect_.smoothing_on);
+    print(clamps_.opening());
     if (!program_.loop) {
       std::size_t within = 0;
       for (const auto& tooth : op.teeth) {
@@ -161,6 +193,7 @@ class Writer {
         const std::vector<joints::AxisBlock>& list = tooth.all(room);
         out_.comment(tooth.remark.empty() ? fmt::format("TOOTH {}", tooth.tooth) : numbers::comment_text(tooth.remark));
         forget();
+        clamps_.enter(list, false);
         blocks(list, {0, list.size()}, IndexWord::literal);
         if (tooth.pause) fill(dialect_.pause);
         behind_tooth();
@@ -172,7 +205,7 @@ class Writer {
     } else {
       loop_body(op);
     }
-    for (const auto& line : dialect_.smoothing_off) out_.line(line);
+    print(dialect_.smoothing_off);
     if (tilts_) fill(dialect_.planes.off);
     fill(dialect_.operation_end);
     if (coolant_) out_.line(coolant_->off);
@@ -186,6 +219,7 @@ class Writer {
     forget();
     const auto& tooth = op.teeth.front().blocks;
     words_.enter_loop(tooth);
+    clamps_.enter(tooth, true);
     blocks(tooth, {0, tooth.size()}, IndexWord::shifted);
     behind_tooth();
     fill(dialect_.loop.after);
@@ -212,13 +246,16 @@ class Writer {
     for (int n = op.first_place; n < program_.teeth; ++n) {
       const int k = joints::tooth_of_place(n, program_.tooth_stride, program_.teeth);
       number_here(position, static_cast<std::size_t>(n - op.first_place) + 1);
+      clamps_.enter(tooth, true);
       for (std::size_t i = 0; i < segments->size(); ++i) {
+        print(clamps_.ahead(tooth, (*segments)[i].first));
         joints::AxisBlock turn = tooth[(*segments)[i].first];
         turn.words[index] += numbers::ratio_to_fixed(std::int64_t{360} * k * program_.index_sign, program_.teeth,
                                                      program_.format.rotary_decimals);
         turn.forced = true;
         forget();
         rapid(turn, IndexWord::literal);
+        print(clamps_.behind(tooth, (*segments)[i].first));
         out_.line(fmt::format("M98 P{}", first + static_cast<int>(i)));
       }
       behind_tooth();
@@ -242,7 +279,8 @@ class Writer {
     inverse_time_ = false;
     for (std::size_t i = s.first; i < s.last && !error_; ++i) {
       const joints::AxisBlock& b = list[i];
-      if (i > s.first) note_unwinding(list[i - 1], b);
+      if (i > s.first && !program_.planes) note_unwinding(list[i - 1], b);
+      print(clamps_.ahead(list, i));
       switch (b.kind) {
         case joints::BlockKind::feed:
         case joints::BlockKind::turn:
@@ -253,6 +291,7 @@ class Writer {
         case joints::BlockKind::tcp_off: switch_tcp(b, index); break;
         default: rapid(b, index); break;
       }
+      print(clamps_.behind(list, i));
     }
     if (inverse_time_) out_.line(fmt::format("G94 F{}", values_["free"]));
     inverse_time_ = false;
@@ -429,6 +468,7 @@ class Writer {
   NcLines out_;
   NcAxisWords words_;
   NcPlaneWords planes_;
+  NcClamps clamps_;
   NcLines::Values values_;
   bool tcp_;
   std::optional<machines::CoolantWords> coolant_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,6 +28,8 @@ struct NcHeader {
       0.002;  ///< how far the control may turn a rotary off its way with TCP: counts as deviation of the tool axis
   machines::Coolant coolant = machines::Coolant::off;  ///< with every operation
   TextWishes wishes;
+  std::optional<joints::GraphicsBlank> blank;  ///< for the graphics of the control, where it has words for it
+  std::string no_blank;                        ///< why there is none; stands in the text in its place
 };
 
 struct NcText {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/process/cutting_force.h"
+#include "app/process/flow/graphics_blank.h"
 #include "app/process/flow/machine_moves.h"
 #include "app/process/flow/machine_picture.h"
 #include "app/process/flow/registry.h"
@@ -71,9 +72,10 @@ void keep_proof(Run& run, const proof::ProofLimits& limits, process::ProgramProo
 std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& limits, app::OutputDir& output) {
   const process::GearProcess& gear = *run.gear.process;
   const auto paths = run.paths();
+  const auto blank = graphics_blank(gear, *run.job.setup);
   auto posted = process::post_program(run.checked,
                                       {run.job, run.job.name + (run.gear.correction ? ", corrected" : ""), run.machine,
-                                       gear.part().teeth, gear.link_body(run.machine), run.restart},
+                                       gear.part().teeth, gear.link_body(run.machine), run.restart, blank},
                                       run.report.assumed, output, run.clock);
   if (!posted) return posted.error();
   const joints::AxisProgram& program = posted->axes;
@@ -87,7 +89,8 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
   bodies::MovesJudge moves = judge_of(run.machine, std::move(*bodies), run.job, limits.clearance_mm);
   page::StateRecorder states = recorder_of(run.job, gear.part().teeth);
   const process::ProgramText whole{posted->text, file,   run.job,
-                                   run.machine,  &moves, [&](const readback::ExecutedMove& move) { states.add(move); }};
+                                   run.machine,  &moves, [&](const readback::ExecutedMove& move) { states.add(move); },
+                                   blank};
   auto proof = process::prove_program(
       whole, {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad},
       run.milling->check(), run.clock);
