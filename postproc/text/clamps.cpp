@@ -18,6 +18,7 @@ void NcClamps::change(std::size_t rotary, State to, std::vector<std::string>& li
 
 std::vector<std::string> NcClamps::opening() {
   std::vector<std::string> lines;
+  state_.fill(State::unknown);
   for (std::size_t k = 0; k < 2; ++k)
     if (dialect_.clamps[k]) change(k, State::released, lines);
   stood_.reset();
@@ -33,7 +34,8 @@ void NcClamps::enter(const std::vector<joints::AxisBlock>& tooth, bool looped) {
     // The text of a loop is that of all its teeth; vectors leave a rotary beside its word by its last digits.
     const bool always = looped && (stops_ || program_.index_axis == 3 + static_cast<int>(k) ||
                                    program_.tcp == machines::TcpMode::vectors);
-    enters_[k] = always || state_[k] == State::unknown || !stood_ || (*stood_)[k] != tooth.front().words[3 + k];
+    enters_[k] =
+        always || (!looped && state_[k] == State::unknown) || !stood_ || (*stood_)[k] != tooth.front().words[3 + k];
   }
   stood_ = {tooth.back().words[3], tooth.back().words[4]};
 }

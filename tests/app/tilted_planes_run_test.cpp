@@ -26,7 +26,8 @@ INSTANTIATE_TEST_SUITE_P(
                       PlaneCase{"m80_ac", "nc", "\nG68.2 X0. Y0. Z30. I", "G53.1 P2", "G53.1 P1", ""},
                       PlaneCase{"siemens_ac", "mpf", "\nCYCLE800(0,\"\",0,39,0,0,30,R2", ",0,0,0,-1,0,1)",
                                 ",0,0,0,1,0,1)", "WORKPIECE(,\"\",,\"PIPE\",448,"},
-                      PlaneCase{"heidenhain_ac", "h", " PLANE SPATIAL SPA-", "SEQ-", "SEQ+", "BLK FORM CYLINDER Z R"}));
+                      PlaneCase{"heidenhain_ac", "h", " PLANE SPATIAL SPA-", "SEQ- TABLE", "SEQ+ TABLE",
+                                "BLK FORM CYLINDER Z R"}));
 
 std::string replaced(std::string text, const std::string& from, const std::string& to, bool all = false) {
   std::size_t at = text.find(from);
@@ -46,6 +47,7 @@ std::size_t count(const std::string& text, const std::string& part) {
 std::string machine_text(const std::string& machine) {
   std::string text = file_text(std::string(TOOTHPATH_SOURCE_DIR) + "/machines/data/" + machine + ".toml");
   text = replaced(text, "[axes.C]\n", "[axes.C]\nclamp = [\"M10\", \"M11\"]\nclamp_time = [0.5, 0.25]\n");
+  text = replaced(text, "max = 60.0", "max = 2.0");  // of A: one pair of angles is within the travel
   return replaced(text, "[axes.A]\n", "[axes.A]\nclamp = [\"M68\", \"M69\"]\n");
 }
 
@@ -55,6 +57,7 @@ std::string job_text(bool planes) {
   text = replaced(text, "\"xyzac_large.toml\"", "\"machine.toml\"\naccept_assumed = true");
   text = replaced(text, "[3.0, -2.0, 120.0]", "[0.0, 0.0, 30.0]");
   text = replaced(text, "[3.0, -2.0, 0.0]", "[0.0, 0.0, 0.0]");
+  text = replaced(text, "chord_tolerance = 0.002\n", "chord_tolerance = 0.002\ntool_axis = [[62.5, 6.0, 0.0]]\n");
   return text + (planes ? "\n[program]\ntilted_planes = true\n" : "");
 }
 
