@@ -41,7 +41,8 @@ void NcClamps::enter(const std::vector<joints::AxisBlock>& tooth, bool looped) {
 }
 
 bool NcClamps::turns(const std::vector<joints::AxisBlock>& tooth, std::size_t block, std::size_t rotary) const {
-  if (is_link_turn(tooth[block]) && enters_[rotary]) return true;
+  const bool may_turn = is_link_turn(tooth[block]) || (block == 0 && tooth[0].kind == joints::BlockKind::feed);
+  if (may_turn && enters_[rotary]) return true;
   return block > 0 && tooth[block].words[3 + rotary] != tooth[block - 1].words[3 + rotary];
 }
 

@@ -31,8 +31,10 @@ class NcClamps {
 
   /// A tooth has ended.
   void leave() {
-    if (stops_) state_.fill(State::unknown);
+    if (stops_) stopped();
   }
+  /// The program has stopped.
+  void stopped() { state_.fill(State::unknown); }
 
   /// What the lines so far take where they change something, min.
   [[nodiscard]] double minutes() const { return minutes_; }

@@ -88,6 +88,8 @@ std::vector<std::string> header_comments(const joints::AxisProgram& program, con
       out.push_back(
           numbers::comment_text(note.value_or(dialect.rollover.note)));  // a name that does not exist stays visible
     }
+  if (!dialect.blank.empty() && !header.blank && !header.no_blank.empty())
+    out.push_back(numbers::comment_text(header.no_blank));
   for (auto& line : order_comments(program)) out.push_back(std::move(line));
   for (auto& line : assumed_comments(header.assumed, dialect, dialect.frame_begin.size() + out.size()))
     out.push_back(std::move(line));

@@ -93,11 +93,7 @@ class Writer {
   }
   /// The blank of the graphics.
   void blank() {
-    if (dialect_.blank.empty()) return;
-    if (!header_.blank) {
-      if (!header_.no_blank.empty()) out_.comment(numbers::comment_text(header_.no_blank));
-      return;
-    }
+    if (dialect_.blank.empty() || !header_.blank) return;
     const joints::GraphicsBlank& b = *header_.blank;
     const auto scaled = [](double mm) { return numbers::to_fixed(mm, kBlankDecimals); };
     const auto size = [&](const char* name, std::int64_t v) {
@@ -195,7 +191,10 @@ class Writer {
         forget();
         clamps_.enter(list, false);
         blocks(list, {0, list.size()}, IndexWord::literal);
-        if (tooth.pause) fill(dialect_.pause);
+        if (tooth.pause) {
+          fill(dialect_.pause);
+          clamps_.stopped();
+        }
         behind_tooth();
       }
     } else if (loop.form == NcLoop::Form::stretches) {

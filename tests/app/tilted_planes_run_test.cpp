@@ -121,5 +121,27 @@ TEST(TiltedPlanesRun, AJobWithoutThemHasClampsToo) {
   EXPECT_NE(held.err.find("C turns, and nothing has released it"), std::string::npos) << held.err;
 }
 
+// A gear beside the axis that turns it: every tooth has its own place in the machine, and the graphics have no ring.
+TEST(TiltedPlanesRun, AGearBesideTheAxisOfTheTable) {
+  for (const auto& [machine, extension] : {std::pair{"heidenhain_ac", "h"}, std::pair{"siemens_ac", "mpf"}}) {
+    const TestDir dir;
+    write_file(dir / "machine.toml", machine_text(machine));
+    write_file(dir / "job.toml", replaced(job_text(true), "[0.0, 0.0, 30.0]", "[20.0, 10.0, 30.0]"));
+    const auto run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
+    ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+    const std::string program = file_text(dir / (std::string("out/program.") + extension));
+    EXPECT_NE(program.find("NO BLANK FOR THE GRAPHICS: THE GEAR AXIS IS NOT Z OF THE WORK OFFSET"), std::string::npos);
+  }
+}
+
+TEST(TiltedPlanesRun, TheDryRunReleasesItsRotaries) {
+  for (const char* machine : {"fanuc_ac", "siemens_ac", "heidenhain_ac"}) {
+    const TestDir dir;
+    write_file(dir / "machine.toml", machine_text(machine));
+    const auto run = run_program({"machine", "test", dir / "machine.toml", "--out", dir / "out"});
+    EXPECT_EQ(run.exit_code, 0) << machine << run.err << run.out;
+  }
+}
+
 }  // namespace
 }  // namespace toothpath::test
