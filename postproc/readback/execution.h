@@ -43,6 +43,16 @@ struct NcRules {
   bool reference_keeps_length = false;
 };
 
+/// One rigid transform: from the words to the table frame, seen from the work offset.
+struct TiltedPlane {
+  Vec3 origin_mm = Vec3::Zero();
+  Mat3 rotation = Mat3::Identity();
+  enum class State : std::uint8_t { defined, turning, turned } state = State::defined;
+  std::array<double, 2> at_deg{};  ///< turned: the rotaries, within half a turn of zero, stand the tool upright on it
+  double cosine = 1, sine = 0;     ///< .. and turn X Y of the words to those of the machine
+  Vec3 zero_mm = Vec3::Zero();     ///< .. where the tip of the words X0 Y0 Z0 is, machine coordinates
+};
+
 class NcExecution {
  public:
   using Problem = std::optional<std::string>;
@@ -170,16 +180,7 @@ class NcExecution {
   bool tcp_ = false;
   std::array<double, 5> rolled_{};  // rotaries that roll over by the sign of their words: as the control adds them up
   double frame_deg_ = 0;
-  /// One rigid transform: from the words to the table frame, seen from the work offset.
-  struct Plane {
-    Vec3 origin_mm = Vec3::Zero();
-    Mat3 rotation = Mat3::Identity();
-    enum class State : std::uint8_t { defined, turning, turned } state = State::defined;
-    std::array<double, 2> at_deg{};  ///< turned: the rotaries, within half a turn of zero, stand the tool upright on it
-    double cosine = 1, sine = 0;     ///< .. and turn X Y of the words to those of the machine
-    Vec3 zero_mm = Vec3::Zero();     ///< .. where the tip of the words X0 Y0 Z0 is, machine coordinates
-  };
-  std::optional<Plane> plane_;
+  std::optional<TiltedPlane> plane_;
   int operation_ = -1, tooth_ = -1, tool_ = -1, next_tool_ = -1;
   Feed feed_mode_ = Feed::none;
   std::optional<double> feed_, length_;
