@@ -29,6 +29,12 @@ struct LinearAxis {
   double max_jerk = 0.0;          ///< mm/min^3; 0: not stated
 };
 
+/// What holds a rotary axis where it stands, by words of the builder.
+struct RotaryClamp {
+  std::string on, off;             ///< words of a program: "M10" clamps, "M11" releases
+  double on_min = 0, off_min = 0;  ///< what they take, minutes; 0: not stated
+};
+
 struct RotaryAxis {
   char letter = 'C';               ///< A, B or C
   Vec3 direction = Vec3::UnitZ();  ///< unit vector, machine axes, all rotaries at zero
@@ -42,6 +48,7 @@ struct RotaryAxis {
   double max_speed = 0.0;  ///< rad/min
   double max_acceleration = 0.0;  ///< rad/min^2; 0: not stated
   double max_jerk = 0.0;          ///< rad/min^3; 0: not stated
+  std::optional<RotaryClamp> clamp = std::nullopt;
 
   [[nodiscard]] double pivot_length_mm() const { return point_mm.z(); }  ///< head axes only
   /// Rot(direction, sign * (command - zero)).

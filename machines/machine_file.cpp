@@ -16,6 +16,7 @@ namespace {
 constexpr double kLargestAcceleration = 1e7;  // mm/s^2, deg/s^2
 constexpr double kLargestJerk = 1e10;         // mm/s^3, deg/s^3
 constexpr double kLongestToolChange = 3600;   // s
+constexpr double kLongestClamp = 60;          // s
 constexpr double kLeastTravel = 10.0;         // mm; less means metres
 constexpr double kLeastDirection = 1e-3;      // length of a direction as written
 constexpr double kLeastOffset = 1.0;          // mm; the largest offset of all table axes: less may mean metres ...
@@ -135,6 +136,32 @@ Vec3 read_head_point(toml::TableReader& axis, const Vec3& direction) {
   return point;
 }
 
+/// The words that clamp an axis and release it, and how many seconds they take.
+std::optional<RotaryClamp> read_clamp(toml::TableReader& axis) {
+  axis.relate(toml::KeyRelation::Kind::needs, "clamp_time", "clamp");
+  if (!axis.has("clamp") && axis.misplaced("clamp_time"))
+    axis.refuse("clamp_time", "{} needs {}", axis.name("clamp_time"), axis.name("clamp"));
+  const auto words = axis.optional_ascii_list("clamp", {2, 2});
+  const auto times =
+      axis.has("clamp") ? axis.optional_numbers("clamp_time", 2, {0.0, kLongestClamp, " s"}) : std::nullopt;
+  if (!words) return std::nullopt;
+  if (words->size() != 2) {
+    axis.refuse("clamp", "{} has {} words, must have 2: one that clamps and one that releases", axis.name("clamp"),
+                words->size());
+    return std::nullopt;
+  }
+  if (words->front() == words->back()) {
+    axis.refuse("clamp", "{}: {} cannot both clamp and release", axis.name("clamp"), words->front());
+    return std::nullopt;
+  }
+  RotaryClamp clamp{words->front(), words->back()};
+  if (times) {
+    clamp.on_min = (*times)[0] / 60;
+    clamp.off_min = (*times)[1] / 60;
+  }
+  return clamp;
+}
+
 RotaryAxis read_rotary(toml::TableReader axis, char letter, bool in_table, const LimitMargin& margin) {
   RotaryAxis out;
   out.letter = letter;
@@ -161,6 +188,7 @@ RotaryAxis read_rotary(toml::TableReader axis, char letter, bool in_table, const
   out.max_speed = radians(read_speed(axis, " deg/min"));
   out.max_acceleration = radians(read_acceleration(axis, " deg/s^2"));
   out.max_jerk = radians(read_jerk(axis, " deg/s^3"));
+  out.clamp = read_clamp(axis);
   axis.finish();
   return out;
 }

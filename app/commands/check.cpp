@@ -4,6 +4,7 @@
 
 #include "app/base/output_dir.h"
 #include "app/job/file.h"
+#include "app/process/flow/graphics_blank.h"
 #include "app/process/flow/machine_moves.h"
 #include "app/process/flow/machine_picture.h"
 #include "app/process/flow/stages.h"
@@ -97,7 +98,8 @@ Status prove(Check& check) {
   bodies::MovesJudge moves = flow::judge_of(check.machine, std::move(*bodies), check.job, check.limits.clearance_mm);
   page::StateRecorder states = flow::recorder_of(check.job, check.gear.process->part().teeth);
   auto proof = process::prove_program({check.text, check.request.program_file, check.job, check.machine, &moves,
-                                       [&](const readback::ExecutedMove& move) { states.add(move); }},
+                                       [&](const readback::ExecutedMove& move) { states.add(move); },
+                                       flow::graphics_blank(*check.gear.process, *check.job.setup)},
                                       {}, check.milling->check(), check.clock);
   if (!proof) return proof.error();
   check.proof = std::move(proof.value());

@@ -389,6 +389,7 @@ ProgramSettings read_program_settings(toml::TableReader& table) {
     program.text.stop_word = text::StopWord::block_skip;
   program.contour_tolerance_mm = table.optional_number("contour_tolerance", kContourTolerance);
   program.text.restart_numbers = table.boolean_or("restart_numbers", program.text.restart_numbers);
+  program.tilted_planes = table.boolean_or("tilted_planes", program.tilted_planes);
   constexpr std::pair<std::string_view, machines::PoleOption> kPoles[] = {
       {"error", machines::PoleOption::error}, {"tilt", machines::PoleOption::tilt},
       {"hold", machines::PoleOption::hold},   {"through", machines::PoleOption::through},

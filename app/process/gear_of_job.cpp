@@ -101,6 +101,26 @@ ValueOrErrors<bevel_gear::BevelGear> make_bevel_gear(const job::Job& job) {
   return errors;
 }
 
+namespace {
+
+/// What has no tilted planes, and what can be done instead.
+void refuse_planes(const job::Job& job, const machines::Machine& machine, const text::NcDialect& dialect,
+                   std::vector<Diagnostic>& errors) {
+  const SourcePosition at = job.where("program.tilted_planes");
+  if (dialect.planes.on.empty())
+    errors.push_back(
+        fail_at(at,
+                "tilted_planes: dialect \"{}\" has no words for them that can be proven, leave it out: the "
+                "rotaries then turn by words of their own",
+                dialect.name));
+  else if (const auto planes = joints::plane_form_of(machine.chain, dialect.format); !planes)
+    errors.push_back(fail_at(at, "tilted_planes: {}; this is {}. Leave it out{}", planes.error().message, machine.name,
+                             machine.tcp == machines::TcpMode::none ? ": the rotaries then turn by words of their own"
+                                                                    : ": the program is then written with TCP"));
+}
+
+}  // namespace
+
 ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional<double> part_diameter_mm) {
   if (job.machine.file.empty()) return std::vector{fail_at(job.where(""), "the job lacks the table [machine]")};
   const std::string directory = std::filesystem::path(job.file).parent_path().string();
@@ -151,6 +171,7 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
     errors.push_back(fail_at(job.where("program.restart_numbers"),
                              "restart_numbers: dialect \"{}\" has {}, leave it out", dialect->name,
                              dialect->block_numbers ? "a number in every block" : "no numbers of blocks"));
+  if (dialect && job.program.tilted_planes) refuse_planes(job, machine, *dialect, errors);
   if (!errors.empty()) return errors;
   return machine;
 }

@@ -3,8 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "app/process/program_report.h"
@@ -24,6 +26,23 @@ constexpr double kCopyShare = 0.25;
 /// Of the gouge tolerance, mm.
 double copy_tolerance(const job::Job& job) { return kCopyShare * job.verify.gouge_tolerance_mm; }
 
+constexpr double kSameBlank = 6e-4;  // mm: three digits are printed
+
+/// What is wrong with the blank of the graphics; empty: nothing.
+std::string other_blank(const joints::GraphicsBlank& asked, const joints::GraphicsBlank& seen) {
+  const std::tuple<const char*, double, double> sizes[] = {{"radius", seen.radius_mm, asked.radius_mm},
+                                                           {"radius of the bore", seen.bore_mm, asked.bore_mm},
+                                                           {"bottom", seen.bottom_mm, asked.bottom_mm},
+                                                           {"top", seen.top_mm, asked.top_mm}};
+  for (const auto& [name, value, limit] : sizes)
+    if (!(std::abs(value - limit) <= kSameBlank))
+      return fmt::format(
+          "the blank of the graphics has the {} {:.3f} mm, that of the job {:.3f} mm: the graphics show "
+          "another part, nothing is cut by it",
+          name, value, limit);
+  return {};
+}
+
 /// The text as moves of the axes: of teeth that stand one by one those of the first ones.
 Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& asked, const GearCheck& gear,
                                   app::StageClock& clock) {
@@ -34,6 +53,12 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
   out.control = std::move(*control);
   const readback::AskedConditions conditions = asked_conditions(job, asked.paths);
   readback::ConditionJudge judge(program.machine, out.control, conditions);
+  std::map<int, std::string> blanks;  // by their lines: the text is executed more than once
+  out.control.blank = [&](const joints::GraphicsBlank& seen, std::int32_t line) {
+    if (program.blank)
+      if (auto differs = other_blank(*program.blank, seen); !differs.empty())
+        blanks.emplace(line, fmt::format("line {}: {}", line, differs));
+  };
   auto read = clock.run("read back", [&] {
     WorkShare share(double(std::count(program.text.begin(), program.text.end(), '\n') + 1));
     int seen = 0;  // lines; those of loops and sub-programs are counted once
@@ -48,6 +73,7 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
                         if (program.watch) program.watch(m);
                       }});
   });
+  out.control.blank = nullptr;
   if (!read) return read.error();
   out.read = std::move(read.value());
   out.conditions = judge.finish();
@@ -58,6 +84,7 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
       out.reasons.push_back(std::move(reason));
   }
   out.warnings = out.conditions.warnings;
+  for (auto& [line, warning] : blanks) out.warnings.push_back(std::move(warning));
   out.hash = readback::hash_of_program(program.text);
   if (out.hash && !out.hash->fits()) {
     const bool own = !asked.paths.empty();

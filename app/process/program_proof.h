@@ -34,6 +34,7 @@ struct ProgramText {
   const machines::Machine& machine;
   bodies::MovesJudge* moves = nullptr;  ///< sees every move that is executed; null: no bodies are stated
   std::function<void(const readback::ExecutedMove&)> watch = {};  ///< sees them too; may be empty
+  std::optional<joints::GraphicsBlank> blank = std::nullopt;      ///< that the graphics of the control should have
 };
 
 /// The paths that a program must meet, and how far it may be off them: mm, rad. Without paths (a program that somebody

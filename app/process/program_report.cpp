@@ -11,6 +11,8 @@
 #include "postproc/controls/registry.h"
 #include "postproc/joints/time.h"
 #include "postproc/joints/tooth_order.h"
+#include "postproc/text/clamps.h"
+#include "postproc/text/lines.h"
 #include "postproc/text/writer.h"
 
 namespace toothpath::process {
@@ -64,6 +66,12 @@ report::RunReport report_of(const std::string& command, const job::Job& job, con
                                          degrees(*machine.post.smoothing_axis_tolerance_rad)));
   if (const auto dialect = controls::dialect_of(machine); dialect && dialect->blend && !dialect->contour_trust.empty())
     report.assumed.push_back(fmt::format("{}: contour deviation = {}", job.machine.file, dialect->contour_trust));
+  if (const controls::Control* control = controls::find(machine.dialect);
+      control && job.program.tilted_planes && machine.chain.rotary_count() == 2)
+    report.assumed.push_back(fmt::format(
+        "{}: program.tilted_planes: {}", job.file,
+        text::expanded(control->words.planes.assumed, {{"axis", std::string(1, machine.chain.rotary(1).letter)}})
+            .value_or(control->words.planes.assumed)));
   report.warnings = job.warnings;
   report.warnings.insert(report.warnings.end(), gear_warnings.begin(), gear_warnings.end());
   return report;
@@ -82,6 +90,7 @@ void note_axis_program(report::RunReport& report, const job::Job& job, const mac
   report.has_acceleration = timed;
   report.feed_minutes = timed ? program.accelerated.feed : program.feed_minutes;
   report.total_minutes = timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes;
+  report.total_minutes += program.clamp_minutes;
   report.time_model = program.time_model;
   if (machine.tool_change_min) {
     report.tool_change_minutes = tool_changes(program) * *machine.tool_change_min;
@@ -103,7 +112,7 @@ void note_axis_program(report::RunReport& report, const job::Job& job, const mac
                                       asked.feed_mm_min,
                                       0,
                                       timed ? o.accelerated.feed : o.feed_minutes,
-                                      timed ? o.accelerated.rapid : o.rapid_minutes};
+                                      (timed ? o.accelerated.rapid : o.rapid_minutes) + o.clamp_minutes};
     for (const path::ClPath* path : paths)
       if (path->operation == o.operation) operation.cl_points += path->records.size();
     report.operations.push_back(operation);
@@ -158,6 +167,8 @@ text::NcHeader header_of(const PostRequest& request, const std::vector<std::stri
   header.coolant = request.job.coolant;
   header.program_number = program_number(request.job);
   header.wishes = request.job.program.text;
+  header.blank = request.blank;
+  if (!request.blank) header.no_blank = "NO BLANK FOR THE GRAPHICS: THE GEAR AXIS IS NOT Z OF THE WORK OFFSET";
   header.blend_mm = request.contour_mm.value_or(narrow_contour(request));
   header.contour_granted = request.contour_mm.has_value();
   if (const double radius = largest_radius(request.job); radius > 0) {
@@ -226,6 +237,7 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   auto program = clock.run("axis program", [&] {
     joints::AxisOptions options = controls::axis_options(*dialect, machine);
     options.pack_teeth = true;
+    if (job.program.tilted_planes) options.tilted_planes = job.where("program.tilted_planes");
     if (job.program.spread_teeth) options.tooth_stride = joints::spread_stride(request.teeth);
     return build_axis_program(paths, job.tools, *job.setup, machine, request.teeth, request.body, options);
   });
@@ -233,6 +245,7 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   PostedProgram posted;
   posted.axes = std::move(program.value());
 
+  note_clamp_times(posted.axes, *dialect, job.program.text.stops == text::Stops::teeth);
   const text::NcHeader header = header_of(request, assumed);
   text::note_corners(posted.axes, *dialect, header);
   if (posted.axes.corner_tolerance_mm > 0) estimate_times(posted.axes, machine);
@@ -248,6 +261,7 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
     if (!part) return part.error();
     posted.restarted = std::move(part.value());
     estimate_times(*posted.restarted, machine);
+    note_clamp_times(*posted.restarted, *dialect, job.program.text.stops == text::Stops::teeth);
     text = text::write_nc(*posted.restarted, *dialect, header);
     if (!text) return located(job, "machine.file", text.error());
     posted.blocks = text->blocks;

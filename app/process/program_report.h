@@ -54,6 +54,8 @@ struct PostRequest {
   joints::ClearanceBody body;                     ///< that links keep clear of
   std::optional<joints::ProgramRestart> restart;  ///< the file holds the program from there on
   std::optional<double> contour_mm = {};          ///< that the control is granted; none: the narrow one
+  std::optional<joints::GraphicsBlank> blank =
+      std::nullopt;  ///< nothing: the part does not stand on Z of the work offset
 };
 
 // The contour tolerance that a text allows its control. `posted`: written for the request, its first teeth are there.

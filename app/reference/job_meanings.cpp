@@ -142,6 +142,10 @@ constexpr Meaning kJobMeanings[] = {
      "`true`: N words where an operation and a written tooth begin, N1000, N1001 .., N2000 ..; Heidenhain numbers "
      "every "
      "block at any rate."},
+    {"program.tilted_planes",
+     "`true`: operations whose tool axis stands are written in tilted planes of the control, CYCLE800, PLANE SPATIAL "
+     "or "
+     "G68.2 ([dialects](dialects.md#tilted-planes))."},
     {"program.pole",
      "What is done where the tool axis comes parallel to a rotary; left out: what the machine file says."},
     {"program.pole_angle", "Angle of that option; left out: what the machine file says."},

@@ -78,6 +78,10 @@ constexpr Meaning kMachineMeanings[] = {
     {"axes.*.rollover",
      "`true`: the control counts the axis from 0 to 360 deg and it turns without end, min and max are left out "
      "([dialects](dialects.md#rotaries-that-roll-over)); `false`: words go on beyond a turn, 370 and not 10."},
+    {"axes.*.clamp",
+     "Words of the builder that clamp a rotary and release it, `[\"M10\", \"M11\"]`: programs release it ahead of its "
+     "turns and clamp it where it stands in the cuts that follow ([dialects](dialects.md#clamps-of-the-rotaries))."},
+    {"axes.*.clamp_time", "What they take, for the times; left out: nothing."},
     {"post", "How programs are written; which of these keys a control takes is judged by it."},
     {"post.linear_decimals", "Digits after the point of lengths; left out: those of the dialect."},
     {"post.rotary_decimals", "Digits after the point of angles; left out: those of the dialect."},

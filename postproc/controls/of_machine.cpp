@@ -21,6 +21,14 @@ int m_number(std::string_view word) {
   return error == std::errc() && end == word.data() + word.size() && n >= 0 ? n : -1;
 }
 
+/// n of "M64 Pn" and "M65 Pn", 0 to 63; -1: another text.
+int output_of(std::string_view word) {
+  int n = -1;
+  if (!word.starts_with("M64 P") && !word.starts_with("M65 P")) return -1;
+  const auto [end, error] = std::from_chars(word.data() + 5, word.data() + word.size(), n);
+  return error == std::errc() && end == word.data() + word.size() && word[5] != '-' && n < 64 ? n : -1;
+}
+
 /// Judges a machine file by the words of its control, key by key.
 class Judge {
  public:
@@ -32,6 +40,7 @@ class Judge {
     tcp();
     rollover();
     coolants();
+    clamps();
     references();
     own_lines();
     return std::move(errors_);
@@ -119,6 +128,42 @@ class Judge {
           refuse(key, "{}: {} switches {} off", key, given.on, to_string(other));
           break;
         }
+    }
+  }
+
+  /// What is wrong with a word that shall hold a rotary.
+  [[nodiscard]] std::optional<std::string> fault_of_clamp(const std::string& word) const {
+    if (words_.clamps_by_output && output_of(word) >= 0) return std::nullopt;
+    const int n = m_number(word);
+    const bool own = std::any_of(words_.clamp_m.begin(), words_.clamp_m.end(),
+                                 [n](const auto& range) { return n >= range.first && n <= range.second; });
+    if (own) return std::nullopt;
+    if (words_.only_clamp_m)
+      return fmt::format(
+          "\"{}\" is none of M100 to M199, \"M64 P0\" and \"M65 P0\", which dialect \"{}\" leaves to the "
+          "builder",
+          word, words_.name);
+    return fault_of(word);
+  }
+  /// Every word holds or releases one rotary, and is no other.
+  void clamps() {
+    std::map<std::string, std::string, std::less<>> taken;  // word -> what it switches
+    for (const auto& list : {words_.coolant, machine_.post.coolant})
+      for (const auto& [coolant, used] : list)
+        for (const std::string& word : {used.on, used.off}) taken.emplace(word, to_string(coolant));
+    for (std::size_t k = 0; k < machine_.chain.rotary_count(); ++k) {
+      const machines::RotaryAxis& axis = machine_.chain.rotary(k);
+      if (!axis.clamp) continue;
+      const std::string key = fmt::format("axes.{}.clamp", axis.letter);
+      if (words_.write != nullptr) {
+        refuse(key, "{}: dialect \"{}\" has no words of a builder", key, words_.name);
+        continue;
+      }
+      for (const std::string& word : {axis.clamp->on, axis.clamp->off}) {
+        if (const auto fault = fault_of_clamp(word)) refuse(key, "{}: {}", key, *fault);
+        else if (const auto [at, first] = taken.emplace(word, fmt::format("axes.{}", axis.letter)); !first)
+          refuse(key, "{}: {} switches {}", key, word, at->second);
+      }
     }
   }
 
@@ -238,6 +283,7 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
   d.own_end = post.own_lines.end;
   if (post.own_lines.tool_change) d.tool_call = *post.own_lines.tool_change;
   apply_corners(d, post);
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) d.clamps[k] = machine.chain.rotary(k).clamp;
   for (const auto& [coolant, words] : post.coolant) d.coolant[coolant] = words;
   return d;
 }
@@ -293,6 +339,7 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
     c.letters[3 + k] = machine.chain.rotary(k).letter;
     c.rapid_speed[3 + k] = degrees(machine.chain.rotary(k).max_speed);
     c.rollover[3 + k] = machine.chain.rotary(k).rollover;
+    c.clamps[3 + k] = machine.chain.rotary(k).clamp;
   }
   for (const auto& t : tools) {
     if (!c.tool_length_mm.emplace(t.number, t.length_mm).second) return fail("tool number {} occurs twice", t.number);

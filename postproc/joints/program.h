@@ -152,6 +152,7 @@ struct AxisOperation {
   int first_place = 0;             ///< where the order begins; not 0 only in a program that begins in the middle
   double feed_minutes = 0, rapid_minutes = 0;  ///< over all teeth
   TimedMinutes accelerated;  ///< the same with the accelerations of the axes, where the machine states them
+  double clamp_minutes = 0;  ///< on top: what clamping the rotaries takes (text::note_clamp_times)
 };
 
 /// Least and greatest position of one axis over all teeth, against its limits [mm or rad, machine coordinates].
@@ -207,6 +208,7 @@ struct AxisProgram {
   double corner_tolerance_mm = 0;                   ///< of `round` and `way`
   std::string time_model;                           ///< what the times hold and assume
   TimedMinutes accelerated;                         ///< over all operations
+  double clamp_minutes = 0;                         ///< on top of all times, over all operations
   std::optional<choice::TravelOffer> offer;         ///< empty: not looked for, or too many directions of the part
   std::size_t inserted_blocks = 0;                  ///< by the subdivision
   std::size_t dropped_blocks = 0;                   ///< all words equal to those before

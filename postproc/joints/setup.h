@@ -24,4 +24,10 @@ struct Setup {
   }
 };
 
+/// The turned body ahead of the cut as a ring about Z of the work offset, for the graphics of controls; mm.
+struct GraphicsBlank {
+  double radius_mm = 0, bore_mm = 0;  ///< radii; a bore of 0: it is solid
+  double bottom_mm = 0, top_mm = 0;   ///< seen from the work offset
+};
+
 }  // namespace toothpath::joints

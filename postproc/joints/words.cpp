@@ -31,20 +31,19 @@ RotaryPair AxisWords::rounded(const RotaryPair& a) const {
 /// In a plane its axes are those of the machine: its words differ from the joints by where its origin has been turned
 /// to.
 Vec3 AxisWords::zero(const AxisBlock& at) const {
-  const Vec3 length(0, 0, length_);
-  if (!planes_ || !planes_->tilted(at.words)) return offset_ + length;
-  return chain_.table_to_machine(offset_ + planes_->origin_mm, rotaries(at)) + length;
+  if (!planes_ || !planes_->tilted(at.words)) return offset_;
+  return chain_.table_to_machine(offset_ + planes_->origin_mm, rotaries(at));
 }
 
 std::int64_t AxisWords::joint_word(double joint_mm, int axis, const AxisBlock& at) const {
-  return numbers::to_fixed(joint_mm - zero(at)[axis], format_.linear_decimals);
+  return numbers::to_fixed(joint_mm - zero(at)[axis] - (axis == 2 ? length_ : 0), format_.linear_decimals);
 }
 
 std::int64_t AxisWords::top_word(double joint_mm, const AxisBlock& at) const {
   const std::int64_t nearest = joint_word(joint_mm, 2, at);
   if (!planes_ || !planes_->tilted(at.words)) return nearest;
   const double unit = static_cast<double>(numbers::power_of_ten(format_.linear_decimals));
-  return static_cast<double>(nearest) / unit > joint_mm - zero(at).z() + kRoundOff ? nearest - 1 : nearest;
+  return static_cast<double>(nearest) / unit > joint_mm - zero(at).z() - length_ + kRoundOff ? nearest - 1 : nearest;
 }
 
 AxisBlock AxisWords::turned(const AxisBlock& b, const std::array<std::int64_t, 2>& rotary_words) const {
@@ -89,7 +88,8 @@ machines::Joints AxisWords::joints(const AxisBlock& b) const {
   const double unit = static_cast<double>(numbers::power_of_ten(format_.linear_decimals));
   const Vec3 from = zero(b);
   for (int i = 0; i < 3; ++i)
-    j.linear_mm[i] = static_cast<double>(b.words[static_cast<std::size_t>(i)]) / unit + from[i];
+    j.linear_mm[i] =
+        static_cast<double>(b.words[static_cast<std::size_t>(i)]) / unit + from[i] + (i == 2 ? length_ : 0);
   j.rotary_rad = rotaries(b);
   return j;
 }

@@ -49,7 +49,7 @@ class AxisWords {
   [[nodiscard]] double rotary_step() const;
 
  private:
-  /// Joints where the linear words are 0.
+  /// Where the linear words of the tip are 0, machine coordinates.
   [[nodiscard]] Vec3 zero(const AxisBlock& at) const;
   void set_rotaries(AxisBlock& b, const RotaryPair& rotaries) const;
   [[nodiscard]] RotaryPair rotaries(const AxisBlock& b) const;

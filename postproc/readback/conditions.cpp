@@ -76,15 +76,19 @@ ConditionJudge::Step ConditionJudge::step_to(const ExecutedMove& m) const {
 void ConditionJudge::add(const ExecutedMove& m) {
   if (any_ && m.known && before_.known) {
     if (m.rapid) {
+      end_of_stretch();
       up_ = true;
       way_down_ = {};
     } else if (m.minutes > 0) {
       ConditionsOfOperation& operation =
           found_.operations.try_emplace(m.operation, ConditionsOfOperation{m.tool, {}, {}, {}, {}, 0xff}).first->second;
-      feed(m, step_to(m), operation);
+      const Step step = step_to(m);
+      feed(m, step, operation);
       axes(m);
       spindle(m, operation);
       coolant(m, operation);
+      if (step.way_mm > kStill) clamps(m);
+      else end_of_stretch();  // a turn between cuts, with TCP
       if (m.in_doubt) note(Kind::stop_in_doubt, 0, m, 0);
       if (m.dwell_min > 0 && !up_) note(Kind::dwell, 0, m, double(m.dwell_min) * 60);
     }
@@ -186,6 +190,27 @@ void ConditionJudge::coolant(const ExecutedMove& m, ConditionsOfOperation& opera
     if (other != *asked_.coolant && is_on(m.coolants, other)) note(Kind::other_coolant, static_cast<int>(other), m, 0);
 }
 
+/// A rotary that turns somewhere in a stretch of feeds is not held there; one that stands in all of it should be.
+void ConditionJudge::clamps(const ExecutedMove& m) {
+  for (std::size_t a = 3; a < 5; ++a) {
+    if (!control_.clamps[a]) continue;
+    Loose& loose = loose_[a];
+    loose.turned = loose.turned || m.joints[a] != before_.joints[a] || m.vector_print != 0;
+    if (loose.turned || (m.clamped & (1U << a)) != 0) continue;
+    if (loose.first.empty()) loose.first.push_back(m);
+    ++loose.blocks;
+  }
+}
+
+void ConditionJudge::end_of_stretch() {
+  for (std::size_t a = 3; a < 5; ++a) {
+    Loose& loose = loose_[a];
+    if (!loose.turned && !loose.first.empty())
+      for (std::size_t n = 0; n < loose.blocks; ++n) note(Kind::unclamped, static_cast<int>(a), loose.first.front(), 1);
+    loose = {};
+  }
+}
+
 void ConditionJudge::note(Kind kind, int detail, const ExecutedMove& m, double value, int line) {
   Fault& fault = faults_[{static_cast<int>(kind), m.operation, detail}];
   if (fault.blocks == 0 || value > fault.worst) {
@@ -240,6 +265,11 @@ std::string ConditionJudge::text(Kind kind, int operation, int detail, const Fau
           "{} cuts behind an M0 or M1 that may have ended spindle or coolant{}: the builder of the machine decides "
           "that, M3 and the word of the coolant behind the stop leave no doubt",
           at, times);
+    case Kind::unclamped: {
+      const auto a = static_cast<std::size_t>(detail);
+      return fmt::format("{} cuts while {} stands and is not clamped{}: {} ahead of the cut clamps it", at,
+                         control_.letters[a], times, control_.clamps[a]->on);
+    }
     case Kind::dwell:
       return fmt::format("{} waits {:.6g} s in a cut{}: the tool rubs where it stands", at, f.worst, times);
     case Kind::short_block:
@@ -250,6 +280,7 @@ std::string ConditionJudge::text(Kind kind, int operation, int detail, const Fau
 }
 
 ConditionsFound ConditionJudge::finish() {
+  end_of_stretch();
   for (const auto& [key, fault] : faults_) {
     const auto kind = static_cast<Kind>(key[0]);
     (kind < Kind::quick_cut ? found_.reasons : found_.warnings).push_back(text(kind, key[1], key[2], fault));

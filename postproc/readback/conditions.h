@@ -58,8 +58,9 @@ struct ConditionsFound {
 /// Reasons: a cut more than `feed_factor` times as fast as asked, or a last way down; a feed above
 /// `limits.cutting_feed`; an axis faster than its `max_speed`; S above `spindle.max_speed`, or off the job's by more
 /// than `speed_factor`; another tool than the job's; the job's coolant not on. Warnings: a cut more than 1.5 times as
-/// fast as asked (or `feed_factor`, if that is less); S off the job's; a coolant that the job has off; cuts behind
-/// a stop that may have ended spindle and coolant; a dwell in a cut; blocks shorter than `limits.min_block_ms`.
+/// fast as asked (or `feed_factor`, if that is less); S off the job's; a coolant that the job has off; cuts in which a
+/// rotary stands that the machine could hold and the program does not; cuts behind a stop that may have ended spindle
+/// and coolant; a dwell in a cut; blocks shorter than `limits.min_block_ms`.
 class ConditionJudge {
  public:
   /// All must outlive it.
@@ -87,6 +88,7 @@ class ConditionJudge {
     spindle_near_job,
     other_coolant,
     stop_in_doubt,
+    unclamped,
     dwell,
     short_block  // warnings
   };
@@ -97,6 +99,7 @@ class ConditionJudge {
   void axes(const ExecutedMove& m);
   void spindle(const ExecutedMove& m, ConditionsOfOperation& operation);
   void coolant(const ExecutedMove& m, ConditionsOfOperation& operation);
+  void clamps(const ExecutedMove& m);
   [[nodiscard]] Step step_to(const ExecutedMove& m) const;
   [[nodiscard]] bool as_quick_as_can_be(const ExecutedMove& m) const;
   [[nodiscard]] const AskedCut* asked(int operation) const;
@@ -110,6 +113,14 @@ class ConditionJudge {
   ConditionsFound found_;
   std::map<std::array<int, 3>, Fault> faults_;  ///< by kind, operation, detail (an axis, a tool, a coolant)
   ExecutedMove before_;
+  /// Cuts of one stretch between links in which a rotary stood and was not held; none once it has turned there.
+  struct Loose {
+    std::vector<ExecutedMove> first;  ///< none or one
+    std::size_t blocks = 0;
+    bool turned = false;
+  };
+  std::array<Loose, 5> loose_;
+  void end_of_stretch();
   bool any_ = false;
   bool up_ = false;   ///< on the way of a link
   ValueAt way_down_;  ///< the last way down was that quick

@@ -79,6 +79,8 @@ int group_of_m(int m) {
 bool clash_of_m(const NcControl& control, int one, int other) {
   if (group_of_m(one) != group_of_m(other)) return group_of_m(one) == kCalls || group_of_m(other) == kCalls;
   if (group_of_m(one) != kCoolants || one == other) return true;
+  const auto axis = control.clamped_by(fmt::format("M{}", one));
+  if (axis && axis == control.clamped_by(fmt::format("M{}", other))) return true;
   // Two coolants may go on together.
   const auto ends = [&](int m) {
     const std::string word = fmt::format("M{}", m);
@@ -99,6 +101,7 @@ NcExecution::NcExecution(const NcControl& control, const NcRules& rules,
 
 void NcExecution::begin_operation(int operation) {
   operation_ = operation;
+  clamps_.fill(Clamp::unknown);  // it may be begun with by hand
   spindle_set_ = false;
   tooth_ = -1;
 }
@@ -137,6 +140,7 @@ NcExecution::Problem NcExecution::change_tool() {
   if (!retracted_) return "tool change without a machine retract before it";
   if (next_tool_ < 0) return "tool change without a T word";
   tool_ = next_tool_;
+  clamps_.fill(Clamp::unknown);
   return std::nullopt;
 }
 
@@ -148,6 +152,7 @@ NcExecution::Problem NcExecution::spindle_on() {
 }
 
 void NcExecution::stop() {
+  clamps_.fill(Clamp::unknown);
   if (rules_.stop == ProgramStop::waits) return;
   spindle_doubt_ = spindle_doubt_ || (spindle_ && rules_.stop == ProgramStop::in_doubt);
   coolant_doubt_ = coolant_doubt_ || (coolants_ != 0 && rules_.stop == ProgramStop::in_doubt);
@@ -232,6 +237,39 @@ void NcExecution::switch_coolant(std::string_view word) {
     if (words.on == word) coolants_ = static_cast<std::uint8_t>(coolants_ | bit);
     else if (words.off == word) coolants_ = static_cast<std::uint8_t>(coolants_ & ~bit);
   }
+}
+
+bool NcExecution::switch_clamp(std::string_view word) {
+  const auto axis = control_.clamped_by(word);
+  if (!axis) return false;
+  const machines::RotaryClamp& clamp = *control_.clamps[*axis];
+  const Clamp to = clamp.on == word ? Clamp::clamped : Clamp::released;
+  if (clamps_[*axis] != to) dwell_min_ += to == Clamp::clamped ? clamp.on_min : clamp.off_min;
+  clamps_[*axis] = to;
+  return true;
+}
+
+/// No block turns a rotary that is held, or may be.
+NcExecution::Problem NcExecution::clamps_allow(const std::array<double, 5>& goal, std::uint8_t commanded) const {
+  for (std::size_t a = 3; a < 5; ++a) {
+    const double turn = std::abs(goal[a] - joints_[a]);
+    if (!control_.clamps[a] || (commanded & (1U << a)) == 0 || turn <= kZeroRotary || clamps_[a] == Clamp::released)
+      continue;
+    const char letter = control_.letters[a];
+    const std::string& release = control_.clamps[a]->off;
+    if (clamps_[a] == Clamp::clamped)
+      return std::isnan(turn)
+                 ? fmt::format("{} turns while it is clamped: {} ahead of the block releases it", letter, release)
+                 : fmt::format(
+                       "{} turns by {:.4f} deg while it is clamped, limit 0: {} ahead of the block "
+                       "releases it",
+                       letter, turn, release);
+    return fmt::format(
+        "{} turns, and nothing has released it since the operation, a change of the tool or a stop: {} "
+        "must stand ahead of the block",
+        letter, release);
+  }
+  return std::nullopt;
 }
 
 bool NcExecution::site_smoothing(std::string_view line) {
@@ -464,6 +502,9 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
     return "axis words ahead of G90: whether they are positions would depend on the last program";
   if (tcp_ && m.machine_frame) return "machine coordinates with TCP on";
   if (auto bad = tcp_ ? tip_goal(m, goal, tip, e.commanded) : goal_of(m, goal, tip, e.commanded)) return bad;
+  if (auto bad = clamps_allow(goal, e.commanded)) return bad;
+  for (std::size_t a = 3; a < 5; ++a)
+    if (clamps_[a] == Clamp::clamped) e.clamped = static_cast<std::uint8_t>(e.clamped | (1U << a));
   e.joints = goal;
   e.tip = tip;
   if (m.vector) e.vector_print = print_of(*m.vector);

@@ -45,6 +45,16 @@ struct NcRules {
   bool reference_keeps_length = false;
 };
 
+/// One rigid transform: from the words to the table frame, seen from the work offset.
+struct TiltedPlane {
+  Vec3 origin_mm = Vec3::Zero();
+  Mat3 rotation = Mat3::Identity();
+  enum class State : std::uint8_t { defined, turning, turned } state = State::defined;
+  std::array<double, 2> at_deg{};  ///< turned: the rotaries, within half a turn of zero, stand the tool upright on it
+  double cosine = 1, sine = 0;     ///< .. and turn X Y of the words to those of the machine
+  Vec3 zero_mm = Vec3::Zero();     ///< .. where the tip of the words X0 Y0 Z0 is, machine coordinates
+};
+
 class NcExecution {
  public:
   using Problem = std::optional<std::string>;
@@ -89,6 +99,8 @@ class NcExecution {
   Problem dwell_turns(double turns);
   /// A word that switches a coolant on or off; one that belongs to none changes nothing.
   void switch_coolant(std::string_view word);
+  /// A word of the builder that clamps a rotary or releases it. @returns it is one
+  bool switch_clamp(std::string_view word);
   Problem select_offset(const std::string& name);
   Problem set_length(int tool);  ///< tool length compensation with the length of this tool
   void drop_length() { length_.reset(); }
@@ -165,6 +177,7 @@ class NcExecution {
   Problem move_to(const Move& m, std::int32_t line);
   Problem roll(Move& m);
   [[nodiscard]] bool at_zero(std::size_t axis) const;
+  Problem clamps_allow(const std::array<double, 5>& goal, std::uint8_t commanded) const;
   Problem goal_of(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const;
   Problem tip_goal(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const;
   Problem plane_goal(const Move& m, std::array<double, 5>& joints, std::uint8_t& commanded) const;
@@ -189,16 +202,7 @@ class NcExecution {
   std::optional<double> frozen_deg_;  // first rotary where TCP froze the table frame
   std::array<double, 5> rolled_{};    // rotaries that roll over by the sign of their words: as the control adds them up
   double frame_deg_ = 0;
-  /// One rigid transform: from the words to the table frame, seen from the work offset.
-  struct Plane {
-    Vec3 origin_mm = Vec3::Zero();
-    Mat3 rotation = Mat3::Identity();
-    enum class State : std::uint8_t { defined, turning, turned } state = State::defined;
-    std::array<double, 2> at_deg{};  ///< turned: the rotaries, within half a turn of zero, stand the tool upright on it
-    double cosine = 1, sine = 0;     ///< .. and turn X Y of the words to those of the machine
-    Vec3 zero_mm = Vec3::Zero();     ///< .. where the tip of the words X0 Y0 Z0 is, machine coordinates
-  };
-  std::optional<Plane> plane_;
+  std::optional<TiltedPlane> plane_;
   int operation_ = -1, tooth_ = -1, tool_ = -1, next_tool_ = -1;
   Feed feed_mode_ = Feed::none;
   std::optional<double> feed_, length_;
@@ -213,6 +217,8 @@ class NcExecution {
   double speed_ = 0;    // S, 1/min
   int length_of_ = -1;  // the tool whose length counts
   std::uint8_t coolants_ = 0;
+  enum class Clamp : std::uint8_t { unknown, released, clamped };
+  std::array<Clamp, 5> clamps_{};
   enum class Distance : std::uint8_t { unsaid, absolute, incremental } distance_ = Distance::unsaid;
   bool unit_ = false;
   bool spindle_doubt_ = false, coolant_doubt_ = false;  ///< a stop may have ended them

@@ -61,6 +61,7 @@ class Interpreter {
     std::vector<int> m;
     bool dwell = false;                       // G4
     bool zeros = false;                       // G52
+    bool output = false;                      // M64 P, M65 P
     bool incremental = false;                 // G91
     std::optional<std::size_t> to_reference;  // 0: G28, 1: G30
     bool p_point = false;
@@ -121,6 +122,11 @@ class Interpreter {
     return std::find(common.begin(), common.end(), m) != common.end() || (call && !language_.o_words) ||
            std::find(language_.coolant_m.begin(), language_.coolant_m.end(), m) != language_.coolant_m.end();
   }
+  /// The machine file names outputs that clamp: M64 P, M65 P.
+  [[nodiscard]] bool has_outputs() const {
+    return std::any_of(control_.clamps.begin(), control_.clamps.end(),
+                       [](const auto& clamp) { return clamp && clamp->on.find(' ') != std::string::npos; });
+  }
   [[nodiscard]] bool has_g(int tenths) const {
     return std::find(language_.g_tenths.begin(), language_.g_tenths.end(), tenths) != language_.g_tenths.end();
   }
@@ -131,7 +137,9 @@ class Interpreter {
       case 'M': {
         const int m = static_cast<int>(std::lround(v));
         if (v == m && language_.codes_of_site && site_code(r, fmt::format("M{}", m))) return std::nullopt;
-        if (v != m || !(has_m(m) || control_.switches_coolant(fmt::format("M{}", m))))
+        const std::string word = fmt::format("M{}", m);
+        if (v == m && (m == 64 || m == 65) && has_outputs()) r.output = true;
+        else if (v != m || !(has_m(m) || control_.switches_coolant(word) || control_.clamped_by(word)))
           return here(w.column, fmt::format("M{} is not in the subset", v));
         return take_m(r, m, w.column);
       }
@@ -324,7 +332,7 @@ class Interpreter {
     if (r.euler[0] || r.euler[1] || r.euler[2]) return here(r.column, "I, J and K belong to G68.2");
     if (r.no_plane) execution_.reset_plane();
     const bool call = !r.m.empty() && (r.m.front() == 97 || r.m.front() == 98);
-    if ((r.p || r.q) && !r.g64 && !r.to_reference && !call) return here(r.p_column, "P or Q without G64 or M98");
+    if ((r.p || r.q) && !r.g64 && !r.to_reference && !r.output && !call) return here(r.p_column, "P or Q without G64 or M98");
     if (r.incremental) execution_.set_incremental();
     if (r.l) return here(r.column, "L is not in the subset");
     if (language_.stops_at_corners) return stop_or_flow(r);
@@ -422,8 +430,22 @@ class Interpreter {
         return flow_.call_program(p);
       }
       case 99: return flow_.return_from_program(r.column);
-      default: execution_.switch_coolant(fmt::format("M{}", m)); break;
+      default: return builders_word(m, r);
     }
+    return std::nullopt;
+  }
+
+  /// What clamps a rotary or switches a coolant.
+  Problem builders_word(int m, const Request& r) {
+    const bool output = m == 64 || m == 65;
+    const std::string word = output ? fmt::format("M{} P{}", m, r.p.value_or(-1)) : fmt::format("M{}", m);
+    const bool clamps = control_.clamped_by(word).has_value();
+    if (output && !clamps) return here(r.column, fmt::format("{} is no word of the machine file", word));
+    if (clamps && moves(r))
+      return here(r.column, fmt::format("{} with an axis word: whether it acts ahead of the motion is the builder's "
+                                        "business, it stands in a block of its own",
+                                        word));
+    if (!execution_.switch_clamp(word)) execution_.switch_coolant(word);
     return std::nullopt;
   }
 

@@ -87,9 +87,9 @@ NcExecution::Problem NcExecution::turn_to_plane(PlanePair pair, std::string_view
     plane_->sine = 0;
   }
   plane_->zero_mm = chain.table_to_machine(*offset_ + plane_->origin_mm, at);
-  plane_->state = Plane::State::turning;
+  plane_->state = TiltedPlane::State::turning;
   if (auto bad = move_to(m, line)) return bad;
-  plane_->state = Plane::State::turned;
+  plane_->state = TiltedPlane::State::turned;
   return std::nullopt;
 }
 
@@ -100,10 +100,10 @@ NcExecution::Problem NcExecution::plane_goal(const Move& m, std::array<double, 5
   for (std::size_t a = 0; a < 5; ++a) {
     if (!m.has[a]) continue;
     commanded = static_cast<std::uint8_t>(commanded | (1U << a));
-    if (a >= 3 && plane_->state != Plane::State::turning)
+    if (a >= 3 && plane_->state != TiltedPlane::State::turning)
       return "a rotary word in a tilted plane: the plane says where the rotaries stand";
     if (a >= 3) joints[a] = m.axis[a];
-    else if (plane_->state != Plane::State::turned)
+    else if (plane_->state != TiltedPlane::State::turned)
       return "an axis word in a tilted plane to which the rotaries have not been turned";
   }
   if (m.has[2]) {

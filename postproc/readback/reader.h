@@ -43,9 +43,10 @@ struct NcControl {
   NcExecute execute = nullptr;    ///< reader of its language
   bool cutter_locations = false;  ///< the text has places of the tool: a post processor makes the moves of the axes
   std::array<char, 5> letters{};  ///< X Y Z and the rotaries in the machine's order; 0: none
-  std::array<double, 5> rapid_speed{};       ///< mm/min and deg/min
-  std::array<bool, 5> rollover{};            ///< the control counts this rotary within one turn
-  std::map<int, double> tool_length_mm;      ///< by T and H number
+  std::array<double, 5> rapid_speed{};                         ///< mm/min and deg/min
+  std::array<std::optional<machines::RotaryClamp>, 5> clamps;  ///< of the rotaries that the builder can hold
+  std::array<bool, 5> rollover{};                              ///< the control counts this rotary within one turn
+  std::map<int, double> tool_length_mm;                        ///< by T and H number
   std::map<int, tool::AptCutter> cutters;    ///< by T number; of those that cutter location data can state
   std::map<std::string, Vec3> work_offsets;  ///< "G54" -> origin, machine coordinates, mm
   double rotary_rounding_deg = 0.5e-5;       ///< half the last digit that the dialect prints
@@ -68,6 +69,8 @@ struct NcControl {
   std::vector<std::string> coolant_words;    ///< M words of the builder that switch coolants, on and off
   std::map<machines::Coolant, machines::CoolantWords> coolants;  ///< all that can be switched, and by which words
   timing::Corners corners = timing::Corners::jump;               ///< how it joins feed blocks
+  /// Sees the blank that the text states for the graphics, and its line; may be empty.
+  std::function<void(const joints::GraphicsBlank&, std::int32_t line)> blank;
   bool dry_run = false;  ///< feed moves with a standing spindle are meant: a program that runs in air
   /// Executed blocks before the program is refused as endless; `execute_nc` allows a text of few lines fewer: 8192 for
   /// each line, but 2 000 000 at least.
@@ -76,6 +79,12 @@ struct NcControl {
 
   [[nodiscard]] bool switches_coolant(std::string_view word) const {
     return std::find(coolant_words.begin(), coolant_words.end(), word) != coolant_words.end();
+  }
+  /// The axis that a word clamps or releases, 3 or 4; nothing: it does neither.
+  [[nodiscard]] std::optional<std::size_t> clamped_by(std::string_view word) const {
+    for (std::size_t a = 3; a < 5; ++a)
+      if (clamps[a] && (clamps[a]->on == word || clamps[a]->off == word)) return a;
+    return std::nullopt;
   }
 };
 
@@ -97,9 +106,10 @@ struct ExecutedMove {
   float blend_axis_rad = 0;  ///< the same of the tool axis (TA of cycle 32)
   float corner_path_mm =
       0;  ///< every axis may leave the path within this way ahead of and behind a corner (G641 ADIS) ..
-  float corner_share = 0;   ///< .. which is this part of the block, a half at most
-  std::int16_t tooth = -1;  ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
-  bool plane = false;       ///< in a tilted plane, or the turn of the rotaries to it
+  float corner_share = 0;    ///< .. which is this part of the block, a half at most
+  std::int16_t tooth = -1;   ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
+  std::uint8_t clamped = 0;  ///< bit a: the rotary is held
+  bool plane = false;        ///< in a tilted plane, or the turn of the rotaries to it
   float tolerance_mm = 0;
   float dwell_min = 0;             ///< the program waits ahead of the move
   bool machine = false;            ///< G53, or the block that switches tool length compensation on

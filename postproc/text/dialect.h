@@ -79,7 +79,7 @@ struct NcPlanes {
   /// In a loop whose control takes no arithmetic in a word: this line ahead of `on`, with the {angle} that is added to
   /// that of the tooth, and the variable that holds the sum. Empty: `NcLoop::index` and the angle.
   std::string index_line, index;
-  std::string note;  ///< comment at the top, with {axis} that tilts: what is assumed of the control
+  std::string assumed;       ///< of the control, with {axis} that tilts
 };
 
 /// What a control wants to read.
@@ -110,14 +110,17 @@ struct NcDialect {
   // Lines.
   NcLinesOfText frame_begin, frame_end;  ///< first and last lines of the file
   NcLinesOfText safe_start;              ///< modal groups reset before anything moves
-  NcLinesOfText start, end;              ///< of the program
-  NcLinesOfText body_end;                ///< ahead of sub-programs that stand behind the main program
-  NcLinesOfText retract;                 ///< Z to its top, machine coordinates
-  NcLinesOfText tool_call;               ///< behind the retract, where the tool changes: fetches it
-  NcLinesOfText tool_keep;               ///< in their place where it stays
-  NcLinesOfText tool_change;             ///< behind these: safe start, spindle
-  NcLinesOfText tool_next;               ///< behind a change: the changer makes {next} ready; not where none follows
-  NcLinesOfText spindle_on = {"M3"};     ///< with the speed that was said
+  /// For the graphics, ahead of `start`: {blank_top} {blank_bottom} {blank_length} {blank_radius} {blank_diameter}, of
+  /// a ring also {bore_radius} {bore_diameter}. Empty: the control has no such words.
+  NcLinesOfText blank, blank_ring;
+  NcLinesOfText start, end;           ///< of the program
+  NcLinesOfText body_end;             ///< ahead of sub-programs that stand behind the main program
+  NcLinesOfText retract;              ///< Z to its top, machine coordinates
+  NcLinesOfText tool_call;            ///< behind the retract, where the tool changes: fetches it
+  NcLinesOfText tool_keep;            ///< in their place where it stays
+  NcLinesOfText tool_change;          ///< behind these: safe start, spindle
+  NcLinesOfText tool_next;            ///< behind a change: the changer makes {next} ready; not where none follows
+  NcLinesOfText spindle_on = {"M3"};  ///< with the speed that was said
   /// Lines of the shop (post.start, ..): behind `start`, behind every tooth, behind `end`; its tool change stands in
   /// `tool_call`.
   NcLinesOfText own_start, own_between_teeth, own_end;
@@ -131,6 +134,11 @@ struct NcDialect {
   bool takes_coolant = true;  ///< the machine file may name M words of its builder
   std::vector<std::pair<int, int>> own_m = {
       {0, 6}, {19, 19}, {30, 30}, {96, 99}};  ///< M words, first to last, that can be no coolant
+  /// M words, first to last, that may hold a rotary although `own_m` has them; `only_clamp_m`: no others may.
+  std::vector<std::pair<int, int>> clamp_m;
+  bool only_clamp_m = false;
+  bool clamps_by_output = false;  ///< "M64 P0" and "M65 P0" may, too: outputs of the control
+  std::array<std::optional<machines::RotaryClamp>, 2> clamps;  ///< of the rotaries of the machine
   bool blend = false;        ///< `start` lets the control leave corners by {blend}: counts as deviation
   double exact_path_mm = 0;  ///< without `blend`: the tip is off a corner by up to this all the same
   /// Codes of a control that stops at every corner or leaves corners by what nobody states: `corner_stop` stands in

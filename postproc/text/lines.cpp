@@ -8,7 +8,6 @@
 #include "postproc/numbers/comment.h"
 #include "postproc/numbers/fixed_point.h"
 #include "postproc/text/corners.h"
-#include "postproc/text/planes.h"
 #include "postproc/text/writer.h"
 
 namespace toothpath::text {
@@ -97,14 +96,14 @@ std::vector<std::string> header_comments(const joints::AxisProgram& program, con
   }
   if (program.tcp != machines::TcpMode::none && !dialect.tcp_note.empty())
     out.push_back(numbers::comment_text(dialect.tcp_note));
-  if (program.planes && !dialect.planes.note.empty())
-    out.push_back(numbers::comment_text(plane_note(program, dialect)));
   for (std::size_t a = 3; a < 5; ++a)
     if (program.rollover[a]) {
       const auto note = expanded(dialect.rollover.note, {{"axis", std::string(1, program.letters[a])}});
       out.push_back(
           numbers::comment_text(note.value_or(dialect.rollover.note)));  // a name that does not exist stays visible
     }
+  if (!dialect.blank.empty() && !header.blank && !header.no_blank.empty())
+    out.push_back(numbers::comment_text(header.no_blank));
   for (auto& line : order_comments(program)) out.push_back(std::move(line));
   for (auto& line : assumed_comments(header.assumed, dialect, dialect.frame_begin.size() + out.size()))
     out.push_back(std::move(line));
@@ -153,10 +152,10 @@ std::vector<std::string> order_comments(const joints::AxisProgram& program) {
     out.push_back(fmt::format("RESTART AT OPERATION {} TOOTH {}", program.restart->operation, program.restart->tooth));
     out.emplace_back("WHAT THE WHOLE PROGRAM CUTS BEFORE THAT IS TAKEN AS DONE");
     const bool timed = program.has_acceleration;
-    out.push_back(fmt::format("RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING{}",
-                              timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes,
-                              timed ? program.accelerated.feed : program.feed_minutes,
-                              timed ? "" : ", WITHOUT ACCELERATIONS"));
+    out.push_back(fmt::format(
+        "RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING{}",
+        (timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes) + program.clamp_minutes,
+        timed ? program.accelerated.feed : program.feed_minutes, timed ? "" : ", WITHOUT ACCELERATIONS"));
   }
   return out;
 }

@@ -54,9 +54,4 @@ void NcPlaneWords::on(const joints::AxisBlock& b, IndexWord index, NcLines::Valu
   out_.fill(dialect_.planes.on, values);
 }
 
-std::string plane_note(const joints::AxisProgram& program, const NcDialect& dialect) {
-  const auto note = expanded(dialect.planes.note, {{"axis", std::string(1, program.letters[4])}});
-  return note.value_or(dialect.planes.note);
-}
-
 }  // namespace toothpath::text

@@ -29,7 +29,4 @@ class NcPlaneWords {
   NcLines& out_;
 };
 
-/// The comment at the top of programs with planes.
-[[nodiscard]] std::string plane_note(const joints::AxisProgram& program, const NcDialect& dialect);
-
 }  // namespace toothpath::text

@@ -12,6 +12,7 @@
 #include "postproc/numbers/comment.h"
 #include "postproc/numbers/fixed_point.h"
 #include "postproc/text/axis_words.h"
+#include "postproc/text/clamps.h"
 #include "postproc/text/corners.h"
 #include "postproc/text/lines.h"
 #include "postproc/text/planes.h"
@@ -23,6 +24,7 @@ constexpr int kLastProgram = 7999;  // O numbers from 8000 on are the builder's
 constexpr int kFirstLabel = 100;
 constexpr int kNumbersOfOperation = 1000;  // N words: of the operation, then of its teeth
 constexpr int kVectorDecimals = 8;
+constexpr int kBlankDecimals = 3;
 
 class Writer {
  public:
@@ -34,6 +36,7 @@ class Writer {
         out_(dialect),
         words_(program, dialect, out_),
         planes_(program, dialect, out_),
+        clamps_(program, dialect, header.wishes.stops == Stops::teeth),
         tcp_(program.tcp != machines::TcpMode::none),
         zero_moves_(program.loop && !program.planes && !dialect.loop.zero_on.empty() &&
                     (!tcp_ || dialect.loop.zero_with_tcp)) {}
@@ -46,6 +49,7 @@ class Writer {
     }
     values_ = program_values(program_, dialect_, header_);
     values_["top"] = linear(program_.retract_z_mm);
+    blank();
     fill(dialect_.start);
     fill(dialect_.own_start);
     for (std::size_t i = 0; i < program_.operations.size(); ++i) {
@@ -89,8 +93,30 @@ class Writer {
       }
     out_.fill({pattern}, values_);
   }
+  /// The blank of the graphics.
+  void blank() {
+    if (dialect_.blank.empty() || !header_.blank) return;
+    const joints::GraphicsBlank& b = *header_.blank;
+    const auto scaled = [](double mm) { return numbers::to_fixed(mm, kBlankDecimals); };
+    const auto size = [&](const char* name, std::int64_t v) {
+      values_[name].clear();
+      numbers::append_fixed(values_[name], v, kBlankDecimals, dialect_.point_always);
+    };
+    const std::int64_t top = scaled(b.top_mm), bottom = scaled(b.bottom_mm);
+    values_["blank_top"] = out_.value(top, kBlankDecimals);
+    values_["blank_bottom"] = out_.value(bottom, kBlankDecimals);
+    size("blank_length", top - bottom);
+    size("blank_radius", scaled(b.radius_mm));
+    size("blank_diameter", 2 * scaled(b.radius_mm));
+    size("bore_radius", scaled(b.bore_mm));
+    size("bore_diameter", 2 * scaled(b.bore_mm));
+    fill(b.bore_mm > 0 ? dialect_.blank_ring : dialect_.blank);
+  }
   std::string linear(double mm) const {
     return out_.value(numbers::to_fixed(mm, program_.format.linear_decimals), program_.format.linear_decimals);
+  }
+  void print(const std::vector<std::string>& lines) {
+    for (const auto& line : lines) out_.line(line);
   }
   void forget() {
     words_.forget();
@@ -111,6 +137,7 @@ class Writer {
   }
   /// Lines of the shop behind a tooth, and a stop; what the stop may have ended is switched on again.
   void behind_tooth() {
+    clamps_.leave();
     fill(dialect_.own_between_teeth);
     if (header_.wishes.stops != Stops::teeth) return;
     stop();
@@ -161,8 +188,9 @@ class Writer {
     fill(tcp_ ? dialect_.tcp_compensation : dialect_.compensation);
     forget();
     if (coolant_) out_.line(coolant_->on);
-    for (const auto& line : dialect_.smoothing_on) out_.line(line);
+    print(dialect_.smoothing_on);
     if (corners_.contour) out_.fill(dialect_.contour_on, values_);
+    print(clamps_.opening());
     if (!program_.loop) {
       std::size_t within = 0;
       for (const auto& tooth : op.teeth) {
@@ -170,8 +198,12 @@ class Writer {
         const std::vector<joints::AxisBlock>& list = tooth.all(room);
         out_.comment(tooth.remark.empty() ? fmt::format("TOOTH {}", tooth.tooth) : numbers::comment_text(tooth.remark));
         forget();
+        clamps_.enter(list, false);
         blocks(list, IndexWord::literal);
-        if (tooth.pause) fill(dialect_.pause);
+        if (tooth.pause) {
+          fill(dialect_.pause);
+          clamps_.stopped();
+        }
         behind_tooth();
       }
     } else if (loop.form == NcLoop::Form::called) {
@@ -181,7 +213,7 @@ class Writer {
     } else {
       loop_body(op);
     }
-    for (const auto& line : dialect_.smoothing_off) out_.line(line);
+    print(dialect_.smoothing_off);
     if (tilts_) fill(dialect_.planes.off);
     if (corners_.contour) out_.fill(dialect_.contour_off, values_);
     fill(dialect_.operation_end);
@@ -203,6 +235,7 @@ class Writer {
     forget();
     const auto& tooth = op.teeth.front().blocks;
     words_.enter_loop(tooth);
+    clamps_.enter(tooth, true);
     blocks(tooth, zero_moves_ ? IndexWord::literal : IndexWord::shifted);
   }
 
@@ -248,7 +281,8 @@ class Writer {
     inverse_time_ = false;
     for (std::size_t i = 0; i < list.size() && !error_; ++i) {
       const joints::AxisBlock& b = list[i];
-      if (i > 0) note_unwinding(list[i - 1], b);
+      if (i > 0 && !program_.planes) note_unwinding(list[i - 1], b);
+      print(clamps_.ahead(list, i));
       switch (b.kind) {
         case joints::BlockKind::feed:
         case joints::BlockKind::turn:
@@ -259,6 +293,7 @@ class Writer {
         case joints::BlockKind::tcp_off: switch_tcp(b); break;
         default: rapid(b, index); break;
       }
+      print(clamps_.behind(list, i));
     }
     if (inverse_time_) out_.line(fmt::format("G94 F{}", values_["free"]));
     inverse_time_ = false;
@@ -434,6 +469,7 @@ class Writer {
   NcLines out_;
   NcAxisWords words_;
   NcPlaneWords planes_;
+  NcClamps clamps_;
   NcLines::Values values_;
   bool tcp_;
   bool zero_moves_;  // the index moves the zero of its rotary

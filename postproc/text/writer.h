@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,8 @@ struct NcHeader {
   bool contour_granted = false;  ///< `blend_mm` is a share of what the proof leaves: the control's own cycle for it
   machines::Coolant coolant = machines::Coolant::off;  ///< with every operation
   TextWishes wishes;
+  std::optional<joints::GraphicsBlank> blank;  ///< for the graphics of the control, where it has words for it
+  std::string no_blank;                        ///< why there is none; stands in the text in its place
 };
 
 struct NcText {

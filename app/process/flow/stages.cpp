@@ -4,6 +4,7 @@
 
 #include "app/process/cutting_force.h"
 #include "app/process/flow/contour.h"
+#include "app/process/flow/graphics_blank.h"
 #include "app/process/flow/machine_moves.h"
 #include "app/process/flow/machine_picture.h"
 #include "app/process/flow/registry.h"
@@ -87,6 +88,7 @@ class Attempts {
                  run.gear.process->part().teeth,
                  run.gear.process->link_body(run.machine),
                  run.restart} {
+    request_.blank = graphics_blank(*run.gear.process, *run.job.setup);
     request_.contour_mm = run.job.program.contour_tolerance_mm;
   }
 

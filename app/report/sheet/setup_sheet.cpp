@@ -61,6 +61,10 @@ void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part,
   sheet.row({"gear axis", setup.axis_up ? "up: teeth towards the spindle, gear X along machine X"
                                         : "down: turned by 180 deg about X"});
   sheet.row({"coolant", coolant_text(job.coolant, machine)});
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k)
+    if (const auto& axis = machine.chain.rotary(k); axis.clamp)
+      sheet.row({fmt::format("clamp of {}", axis.letter),
+                 fmt::format("{} clamps, {} releases", axis.clamp->on, axis.clamp->off)});
   sheet.end_table();
 }
 

@@ -55,7 +55,9 @@ text::NcDialect fanuc_words() {
   d.planes.off = {"G69"};
   d.planes.upper = "1";
   d.planes.lower = "2";
-  d.planes.note = "PLANES G68.2 OF THE PART AT ROTARY ZERO, G53.1 P1 {axis} ABOVE ZERO, P2 BELOW";
+  d.planes.assumed =
+      "G53.1 P1 takes the pair with {axis} above its zero, P2 below; G68.2 counts from the work offset of the part "
+      "with all rotaries at zero, with G43 on; every rotary goes the nearer way";
   d.loop.form = text::NcLoop::Form::called;
   d.loop.before = {"O{program} (OPERATION {operation})"};
   d.loop.after = {"M99"};

@@ -22,6 +22,7 @@ text::NcDialect words() {
   d.loop.call = {"M97 P{label}"};
   d.rollover = {};
   d.coolant = {{machines::Coolant::flood, {"M8", "M9"}}, {machines::Coolant::through_spindle, {"M88", "M89"}}};
+  d.clamp_m = {{10, 13}};  // brakes of the fourth and the fifth axis
   d.own_m = {{0, 6}, {10, 19}, {30, 49}, {75, 82}, {85, 87}, {95, 199}};
   return d;
 }

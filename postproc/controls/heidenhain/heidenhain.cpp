@@ -31,6 +31,8 @@ text::NcDialect words() {
   d.frame_end = {"M30", "END PGM {id} MM"};
   d.safe_start = {"PLANE RESET STAY", "FUNCTION RESET TCPM", "TRANS DATUM RESET", "CYCL DEF 10.0 ROTATION",
                   "CYCL DEF 10.1 ROT+0"};
+  d.blank = {"BLK FORM CYLINDER Z R{blank_radius} L{blank_length} DIST{blank_top}"};
+  d.blank_ring = {"BLK FORM CYLINDER Z R{blank_radius} L{blank_length} DIST{blank_top} RI{bore_radius}"};
   d.start = {"{safe_start}",           "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M126", "CYCL DEF 32.0 TOLERANCE",
              "CYCL DEF 32.1 T{blend}", "CYCL DEF 32.2 HSC-MODE:0 TA{blend_axis}"};
   d.datum = preset_number;
@@ -55,7 +57,9 @@ text::NcDialect words() {
   d.planes.index = "Q5";
   d.planes.upper = "+";
   d.planes.lower = "-";
-  d.planes.note = "PLANE SPATIAL: SEQ+ {axis} ABOVE ZERO, SEQ- BELOW; DATUM OF THE PART AT ROTARY ZERO";
+  d.planes.assumed =
+      "SEQ+ of PLANE SPATIAL takes the pair with {axis} above its zero, SEQ- below; the preset is that of the part "
+      "with all rotaries at zero; every rotary goes the nearer way";
   d.loop.form = text::NcLoop::Form::in_line;
   d.loop.before = {"{first_tooth}", "Q1 = {first}", "LBL {label}", "{pick}", "Q2 = {turns} * 360 / {teeth}"};
   d.loop.after = {"Q1 = Q1 + 1", "FN 12: IF +Q1 LT +{teeth} GOTO LBL {label}"};

@@ -137,6 +137,7 @@ class Heidenhain {
       return placed(column, execution_.clear_zeros());
     }
     if (s.take("TRANS DATUM AXIS ")) return plane_origin(s, column);
+    if (s.take("BLK FORM CYLINDER Z ")) return blank(s);
     if (s.take("FUNCTION RESET TCPM")) return placed(column, execution_.tcp_off());
     if (s.take("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS")) return placed(column, execution_.tcp_on());
     if (s.take("FUNCTION DWELL TIME")) return dwell(s, false);
@@ -255,7 +256,7 @@ class Heidenhain {
     if (!m) return here(column, "number expected");
     static constexpr double known[] = {0, 1, 3, 5, 8, 9, 13, 30, 126, 127, 128, 129};
     if (std::find(std::begin(known), std::end(known), *m) == std::end(known) &&
-        !control_.switches_coolant(fmt::format("M{}", *m)))
+        !control_.switches_coolant(fmt::format("M{}", *m)) && !control_.clamped_by(fmt::format("M{}", *m)))
       return here(column, fmt::format("M{} is not in the subset", *m));
     if (list.size() >= kMostM) return here(column, fmt::format("more than {} M words in a block", kMostM));
     const int n = static_cast<int>(*m);
@@ -285,7 +286,11 @@ class Heidenhain {
       case 127: nearer_way_ = m == 126; return std::nullopt;
       case 128: return placed(column, execution_.tcp_on());
       case 129: return placed(column, execution_.tcp_off());
-      default: execution_.switch_coolant(fmt::format("M{}", m)); return std::nullopt;
+      default: {
+        const std::string word = fmt::format("M{}", m);
+        if (!execution_.switch_clamp(word)) execution_.switch_coolant(word);
+        return std::nullopt;
+      }
     }
   }
   /// Seconds, or turns of the spindle.
@@ -376,6 +381,22 @@ class Heidenhain {
     if ((components & (1 << k)) != 0) return here(column, "a component of the vector occurs twice");
     components |= 1 << k;
     axis[k] = *v;
+    return std::nullopt;
+  }
+
+  /// R of the outside, L down from DIST, RI of the bore.
+  Problem blank(readback::NcScanner& s) {
+    std::array<double, 4> v{};
+    static constexpr std::string_view names[] = {"R", "L", "DIST", "RI"};
+    for (std::size_t i = 0; i < 4; ++i) {
+      s.skip_blanks();
+      if (i == 3 && s.done()) break;
+      if (!s.take(names[i])) return here(s.column(), fmt::format("{} expected", names[i]));
+      const auto n = s.number();
+      if (!n) return here(s.column(), "number expected");
+      v[i] = *n;
+    }
+    if (control_.blank) control_.blank({v[0], v[3], v[2] - v[1], v[2]}, static_cast<std::int32_t>(line_) + 1);
     return std::nullopt;
   }
 
@@ -485,7 +506,8 @@ class Heidenhain {
                     int column) {
     std::vector<MWord> ahead, behind;
     for (const MWord& word : functions) {
-      if (word.m >= 126) return here(word.column, fmt::format("M{} with a straight line", word.m));
+      if (word.m >= 126 || control_.clamped_by(fmt::format("M{}", word.m)))
+        return here(word.column, fmt::format("M{} with a straight line", word.m));
       const bool on = word.m == 3 || word.m == 13 ||
                       std::any_of(control_.coolants.begin(), control_.coolants.end(),
                                   [&](const auto& c) { return c.second.on == fmt::format("M{}", word.m); });

@@ -30,6 +30,8 @@ text::NcDialect words() {
   d.end = {"G61", "G49"};
   d.frame_end = {"M2"};
   d.own_m = {{0, 6}, {19, 19}, {30, 30}, {48, 53}, {60, 73}, {98, 99}};
+  d.clamp_m = {{100, 199}};  // programs of the site
+  d.only_clamp_m = d.clamps_by_output = true;
   d.exact_path_mm = 0.0005;  // unless the machine says otherwise
   d.tcp_codes_of_site = true;
   d.loop.form = text::NcLoop::Form::sub_program;

@@ -25,6 +25,10 @@ text::NcDialect words() {
   d.comment_close = "";
   d.max_line = 240;
   d.safe_start = {"G17 G40 G90 G94 G710", "TRAFOOF", "ROT", "COMPOF"};
+  // All heights are absolute; the last but two is where the machining may end.
+  d.blank = {"WORKPIECE(,\"\",,\"CYLINDER\",192,{blank_top},{blank_bottom},{blank_bottom},{blank_diameter})"};
+  d.blank_ring = {
+      "WORKPIECE(,\"\",,\"PIPE\",448,{blank_top},{blank_bottom},{blank_bottom},{blank_diameter},{bore_diameter})"};
   d.start = {"{safe_start}", "{offset}", "G641 ADIS={blend}"};
   d.retract = {"SUPA G0 Z{top} D0"};
   d.tool_call = {"T=\"T{tool}\"", "M6"};
@@ -51,7 +55,9 @@ text::NcDialect words() {
   d.planes.off = {"CYCLE800()"};
   d.planes.upper = "1";
   d.planes.lower = "-1";
-  d.planes.note = "CYCLE800 WITH THE ONLY SWIVEL DATA SET, DIRECTION OF {axis}; CYCLE800 WITHOUT VALUES TURNS NOTHING";
+  d.planes.assumed =
+      "CYCLE800 has one swivel data set, whose direction 1 is {axis} above its zero and -1 below; CYCLE800() turns "
+      "nothing; every rotary goes the nearer way";
   d.loop.form = text::NcLoop::Form::in_line;
   d.loop.before = {"{first_tooth}", "FOR R1={first} TO {last}", "{pick}", "R2={turns}*360/{teeth}"};
   d.loop.pick = {"R4=R1*{stride}-{teeth}*TRUNC((R1*{stride}+0.5)/{teeth})"};

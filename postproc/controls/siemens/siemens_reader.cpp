@@ -60,7 +60,7 @@ class Siemens {
     std::optional<double> fixed_point;  // FP
     int motion = -1, feed_mode = -1, column = 1, d = -1;
     bool dwell = false, g75 = false, skip = false;
-    bool swivel = false;  // CYCLE800
+    bool whole = false;  // CYCLE800, WORKPIECE: a block of its own
     bool supa = false, g641 = false, g60 = false, traori = false, trafoof = false, rot = false;
     double rot_deg = 0;
     std::optional<std::size_t> trans;  // the rotary whose zero TRANS moves
@@ -191,7 +191,8 @@ class Siemens {
     }
     if (r.skip)
       if (auto bad = skippable(r, words)) return bad;
-    if (r.swivel) return words == 1 ? std::nullopt : Problem(here(1, "CYCLE800 stands in a block of its own"));
+    if (r.whole)
+      return words == 1 ? std::nullopt : Problem(here(1, "CYCLE800 or WORKPIECE with other words in a block"));
     if (r.dwell) return dwell(r, words);
     if (r.g75) return fixed_point(r, words);
     return apply(r);
@@ -330,7 +331,7 @@ class Siemens {
   Problem m_word(Request& r, double v, int column) {
     static constexpr int known[] = {0, 1, 3, 5, 6, 7, 8, 9, 30};
     if (std::find(std::begin(known), std::end(known), v) == std::end(known) &&
-        !control_.switches_coolant(fmt::format("M{}", v)))
+        !control_.switches_coolant(fmt::format("M{}", v)) && !control_.clamped_by(fmt::format("M{}", v)))
       return here(column, fmt::format("M{} is not in the subset", v));
     if (r.m.size() >= kMostM) return here(column, fmt::format("more than {} M words in a block", kMostM));
     const int m = static_cast<int>(v);
@@ -355,8 +356,12 @@ class Siemens {
   Problem keyword(readback::NcScanner& s, Request& r) {
     const int column = s.column();
     if (s.take("CYCLE800(")) {
-      r.swivel = true;
+      r.whole = true;
       return swivel(s, column);
+    }
+    if (s.take("WORKPIECE(,\"\",,\"")) {
+      r.whole = true;
+      return blank(s);
     }
     const std::string_view name = s.letters();
     if (name == "TRAORI") r.traori = true;
@@ -406,6 +411,24 @@ class Siemens {
       r.trans_deg = *v;
     }
     if (!s.done()) return here(s.column(), "TRANS takes one rotary axis of the machine alone");
+    return std::nullopt;
+  }
+
+  /// A cylinder, or a pipe with its bore, all heights absolute: top, bottom, end of the machining; diameters.
+  Problem blank(readback::NcScanner& s) {
+    const bool pipe = s.take("PIPE\",448");
+    if (!pipe && !s.take("CYLINDER\",192"))
+      return here(s.column(), "WORKPIECE is read with \"CYLINDER\",192 and \"PIPE\",448");
+    std::array<double, 5> v{};
+    for (std::size_t i = 0; i < (pipe ? 5U : 4U); ++i) {
+      if (!s.take(",")) return here(s.column(), ", expected");
+      const int column = s.column();
+      const auto n = literal(s, column);
+      if (!n) return n.error();
+      v[i] = *n;
+    }
+    if (!s.take(")")) return here(s.column(), ") expected");
+    if (control_.blank) control_.blank({v[3] / 2, v[4] / 2, v[1], v[0]}, static_cast<std::int32_t>(line_) + 1);
     return std::nullopt;
   }
 
@@ -570,7 +593,14 @@ class Siemens {
         return std::nullopt;
       }
       case 30: ended_ = true; return placed(r.column, execution_.end_program(!loops_.empty()));
-      default: execution_.switch_coolant(fmt::format("M{}", m)); return std::nullopt;
+      default: {
+        const std::string word = fmt::format("M{}", m);
+        const bool clamps = control_.clamped_by(word).has_value();
+        if (clamps && std::any_of(r.move.has.begin(), r.move.has.end(), [](bool h) { return h; }))
+          return here(r.column, word + " with an axis word: it stands in a block of its own");
+        if (!execution_.switch_clamp(word)) execution_.switch_coolant(word);
+        return std::nullopt;
+      }
     }
   }
 
