@@ -32,6 +32,10 @@ NcExecution::Problem NcExecution::define_plane(const Vec3& origin_mm, const Mat3
     return fmt::format("{} on a machine without two rotaries in its table is not in the subset", word);
   if (tcp_) return fmt::format("{} with TCP on", word);
   if (frame_deg_ != 0) return fmt::format("{} in a turned frame", word);
+  for (std::size_t a = 3; a < 5; ++a)
+    if (zero_[a] != 0)
+      return fmt::format("{} while {} counts from {} deg, limit 0: its zero must be moved back ahead of it", word,
+                         control_.letters[a], zero_[a]);
   if (!offset_) return fmt::format("{} ahead of a work offset", word);
   if (!is_rotation(rotation)) return fmt::format("{}: the angles are no rotation", word);
   plane_.emplace();
