@@ -26,6 +26,9 @@ void begin_report(Run& run) {
     report.warnings.push_back(std::move(*coarse));
   if (!run.gear.correction) return;
   report.correction = run.gear.correction->rows;
+  report.index = run.gear.correction->index;
+  report.warnings.insert(report.warnings.end(), run.gear.correction->warnings.begin(),
+                         run.gear.correction->warnings.end());
   double most = 0;
   for (const auto& row : report.correction) most = std::max(most, row.fit.measured_max_mm);
   report.warnings.push_back(
@@ -72,8 +75,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
   const process::GearProcess& gear = *run.gear.process;
   const auto paths = run.paths();
   auto posted = process::post_program(run.checked,
-                                      {run.job, run.job.name + (run.gear.correction ? ", corrected" : ""), run.machine,
-                                       gear.part().teeth, gear.link_body(run.machine), run.restart},
+                                      {run.job, run.job.name + (run.gear.correction ? ", corrected" : ""), run.machine, gear.part().teeth, gear.link_body(run.machine), run.restart},
                                       run.report.assumed, output, run.clock);
   if (!posted) return posted.error();
   const joints::AxisProgram& program = posted->axes;
@@ -118,13 +120,13 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
 
 }  // namespace
 
-process::ValueOrErrors<GearToCut> make_gear(const job::Job& job, const std::vector<std::string>& measured_files,
+process::ValueOrErrors<GearToCut> make_gear(const job::Job& job, const job::MeasuredInput& measured,
                                             app::StageClock& clock) {
   auto made = clock.run("gear", [&] { return make_process(job); });
   if (auto* errors = made.refused()) return std::move(*errors);
   GearToCut gear{std::move(made).value(), std::nullopt};
-  if (measured_files.empty()) return gear;
-  auto corrected = gear.process->correct(measured_files, clock);
+  if (measured.files.empty()) return gear;
+  auto corrected = gear.process->correct(measured, clock);
   if (!corrected) return std::vector{corrected.error()};
   gear.correction = std::move(corrected.value());
   return gear;
@@ -134,7 +136,7 @@ std::vector<Diagnostic> prepare(Run& run, const RunAsked& asked) {
   if (run.job.operations.empty())
     return {fail_at(run.job.where("operation"), "the job lacks an [[operation]]: there is nothing to run")};
   std::vector<Diagnostic> errors;
-  auto gear = make_gear(run.job, asked.measured_files, run.clock);
+  auto gear = make_gear(run.job, asked.measured, run.clock);
   if (auto* refused = gear.refused()) errors = std::move(*refused);
   else run.gear = std::move(gear).value();
   auto loaded = run.clock.run("machine", [&] {
