@@ -63,7 +63,7 @@ std::vector<Diagnostic> read_inputs(Check& check) {
   check.text = std::move(text.value());
   if (!process::wants_scene(request)) return {};
   auto meshes = check.clock.run("stock and fixture meshes",
-                                [&] { return process::load_scene(request); });
+                                [&] { return process::load_scene(request, check.job.setup->clocking_rad); });
   if (!meshes) return {meshes.error()};
   check.scene = std::move(meshes.value());
   const auto placed = check.clock.run("stock and fixture meshes", [&]() -> Status {

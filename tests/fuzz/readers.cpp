@@ -7,6 +7,7 @@
 #include "app/job/file.h"
 #include "app/job/measured_file.h"
 #include "app/job/measured_points.h"
+#include "app/job/measured_setup.h"
 #include "app/tool_library/tool_library.h"
 #include "geometry/mesh/file.h"
 #include "postproc/controls/of_machine.h"
@@ -134,7 +135,11 @@ std::vector<ByteReader> measured_points_readers() {
     return fault_of(job::parse_measured_points(bytes, "measured.txt", gear, 0));
   };
   return {{"measured_plain", "0123456789.,;-+eE \t\n", {plain}, read},
-          {"measured_dmis", "0123456789.,-+$()=/FACRTPOLEU \n", {dmis}, read}};
+          {"measured_dmis", "0123456789.,-+$()=/FACRTPOLEU \n", {dmis}, read},
+          {"measured_setup",
+           kToml,
+           {"[measured]\norigin = [1, -2.5, 3e1] # mm\nclocking = 0.01\ntouches = 16\n"},
+           [](std::string_view bytes) { return fault_of(job::parse_measured_setup(bytes, "part.toml")); }}};
 }
 
 /// Files of tools of other programs: a library of FreeCAD names bits, which lie beside it undamaged.

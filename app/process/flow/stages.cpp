@@ -75,7 +75,10 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
   const process::GearProcess& gear = *run.gear.process;
   const auto paths = run.paths();
   auto posted = process::post_program(run.checked,
-                                      {run.job, run.job.name + (run.gear.correction ? ", corrected" : ""), run.machine, gear.part().teeth, gear.link_body(run.machine), run.restart},
+                                      {run.job,
+                                       run.job.name + (run.gear.correction ? ", corrected" : "") +
+                                           (run.job.setup->measured_file.empty() ? "" : ", as measured"),
+                                       run.machine, gear.part().teeth, gear.link_body(run.machine), run.restart},
                                       run.report.assumed, output, run.clock);
   if (!posted) return posted.error();
   const joints::AxisProgram& program = posted->axes;
