@@ -1,4 +1,5 @@
-// `toothpath probe JOB`: a program that touches teeth that are already there, or, with its results, where they stand.
+// `toothpath probe JOB`: a program that touches a blank or teeth that are there, or, with its results, where they
+// stand.
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -30,6 +31,7 @@ constexpr double kGuardedFeed = 1000;
 struct ProbeRequest : commands::JobRequest {
   std::optional<double> ball_mm, length_mm, allowance_mm, feed;
   std::optional<int> tool, spaces;
+  bool blank = false;
   std::string results;
 };
 
@@ -58,7 +60,8 @@ std::vector<Diagnostic> read_inputs(const ProbeRequest& request, Inputs& in) {
   in.options.ball_diameter_mm = request.ball_mm.value_or(0);
   in.options.allowance_mm = request.allowance_mm.value_or(0);
   in.options.spaces = request.spaces.value_or(in.options.spaces);
-  auto plan = inspection::plan_touches(*in.gear, in.options);
+  auto plan = request.blank ? inspection::plan_blank_touches(*in.gear, in.options)
+                            : inspection::plan_touches(*in.gear, in.options);
   if (!plan) return {process::located(in.job, "gear", plan.error())};
   in.plan = std::move(*plan);
   return {};
@@ -91,13 +94,16 @@ CommandOutcome write_program(const ProbeRequest& request, const Inputs& in, app:
   if (!text) return app::failed(process::located(in.job, "machine.file", text.error()));
   CommandOutcome outcome;
   const std::string name = std::string(kProgram) + dialect->extension;
+  const std::string where = request.blank ? fmt::format("top and rim of the blank in {} places", in.options.spaces)
+                                          : fmt::format("both flanks in {} tooth spaces", in.options.spaces);
   outcome.summary = fmt::format(
-      "  probing program     {}: {} touches of both flanks in {} tooth spaces, ball of {:g} mm\n"
-      "  least gap           {:.3f} mm of ball and stem to what is not touched; the bodies of the machine are not "
-      "looked "
-      "at\n"
+      "  probing program     {}: {} touches of {}, ball of {:g} mm\n"
+      "  not looked at       the bodies of the machine and the holder of the probe\n"
       "  results             \"number x y z\" a line: toothpath probe JOB --results FILE\n",
-      name, in.plan.touches.size(), in.options.spaces, in.options.ball_diameter_mm, in.plan.gap_mm);
+      name, in.plan.touches.size(), where, in.options.ball_diameter_mm);
+  if (!request.blank)
+    outcome.summary +=
+        fmt::format("  least gap           {:.3f} mm of ball and stem to what is not touched\n", in.plan.gap_mm);
   outcome.report_json = nlohmann::ordered_json{{"schema", 1},
                                                {"command", "probe"},
                                                {"program", name},
@@ -158,7 +164,8 @@ CommandOutcome run_probe(const ProbeRequest& request) {
       return app::failed(fail_as(DiagnosticKind::usage, "probe needs {}", name));
   std::vector<std::string> inputs = {request.job_file};
   if (!request.results.empty()) inputs.push_back(request.results);
-  auto output = app::OutputDir::open(request.out_dir, {std::string(kProgram) + ".", kMeasured}, inputs);
+  const std::string made = request.results.empty() ? std::string(kProgram) + "." : kMeasured;
+  auto output = app::OutputDir::open(request.out_dir, {made}, inputs);
   if (!output) return app::failed(output.error());
   Inputs in;
   if (auto errors = read_inputs(request, in); !errors.empty()) return app::failed(std::move(errors));
@@ -169,7 +176,7 @@ CommandOutcome run_probe(const ProbeRequest& request) {
 
 void add_probe(commands::Commands& commands) {
   commands.push_back(commands::command_of<ProbeRequest>(
-      "probe", "a program that touches teeth that are there; from its results where they stand",
+      "probe", "a program that touches a blank or its teeth; from its results where the gear stands",
       [](commands::OptionSet& set, ProbeRequest& request) {
         commands::job_options(set, request);
         set.number("--ball-diameter", request.ball_mm, "of the probe", job::kBallDiameter);
@@ -177,7 +184,9 @@ void add_probe(commands::Commands& commands) {
         set.whole_number("--tool", request.tool, "number of the probe", kTool);
         set.number("--allowance", request.allowance_mm, "that still stands on the flanks (default 0)", kAllowance);
         set.number("--feed", request.feed, "of a touch (default 50)", kFeed);
-        set.whole_number("--spaces", request.spaces, "tooth spaces that are touched (default 4)", kSpaces);
+        set.flag("--blank", request.blank, "top and rim of the turned blank are touched, not teeth");
+        set.whole_number("--spaces", request.spaces,
+                         "tooth spaces, or places of the blank, that are touched (default 4)", kSpaces);
         set.text("--results", request.results,
                  "what the program logged, \"number x y z\" a line: writes part.measured.toml for [setup] measured",
                  "FILE");

@@ -54,7 +54,10 @@ Status place_touches(const inspection::TouchPlan& plan, const joints::Setup& set
   for (const auto& t : plan.touches) {
     ProbeTouch touch;
     touch.number = t.number;
-    touch.remark = fmt::format("ZONE {} TOOTH {} FLANK {:+}", t.zone, t.tooth, t.side);
+    touch.remark = t.what == inspection::Touched::top ? "TOP OF THE BLANK"
+                   : t.what == inspection::Touched::rim
+                       ? "RIM OF THE BLANK"
+                       : fmt::format("ZONE {} TOOTH {} FLANK {:+}", t.zone, t.tooth, t.side);
     touch.start = in_work_offset(setup, t.start());
     touch.past = in_work_offset(setup, t.centre - kBeyondTouch * t.normal);
     for (const Vec3& at : {touch.start, touch.past, Vec3(touch.start.x(), touch.start.y(), program.clear_mm)})

@@ -33,11 +33,17 @@ class Solver {
  public:
   Solver(const face_gear::FaceGear& gear, const TouchPlan& plan, const TouchOptions& options,
          const std::vector<TouchResult>& results)
-      : gear_(gear), plan_(plan), above_(0.5 * options.ball_diameter_mm + options.allowance_mm), results_(results) {}
+      : gear_(gear),
+        plan_(plan),
+        above_(0.5 * options.ball_diameter_mm + options.allowance_mm),
+        results_(results),
+        clocks_(std::any_of(plan.touches.begin(), plan.touches.end(),
+                            [](const Touch& t) { return t.what == Touched::flank; })) {}
 
   /// @param leans  the axis is free to lean;  @param without  a touch that is left out, -1: none
   [[nodiscard]] std::optional<Solved> solve(bool leans, int without) const {
-    const Eigen::Index unknowns = leans ? 6 : 4, n = Eigen::Index(results_.size());
+    const Eigen::Index turns = clocks_ ? 1 : 0, unknowns = 3 + turns + (leans ? 2 : 0),
+                       n = Eigen::Index(results_.size());
     Solved out;
     Eigen::MatrixXd J(n, unknowns);
     Eigen::VectorXd d(n);
@@ -48,11 +54,11 @@ class Solver {
         const auto off = distance(touch, q);
         if (!off) return {};
         // The gear moved by a small way and turn comes nearer by n.way + (q x n).turn.
-        const Vec3 n_q = touch.normal, moment = q.cross(n_q);
+        const Vec3 moment = q.cross(touch.normal);
         d[k] = *off;
-        J.row(k).head(3) = n_q.transpose();
-        if (leans) J.row(k).tail(3) = moment.transpose();
-        else J(k, 3) = moment.z();
+        J.row(k).head(3) = touch.normal.transpose();
+        if (clocks_) J(k, 3) = moment.z();
+        if (leans) J.row(k).tail(2) = moment.head<2>().transpose();
         if (int(k) == without) {
           J.row(k).setZero();
           d[k] = 0;
@@ -62,8 +68,8 @@ class Solver {
       const Eigen::VectorXd x = qr.solve(d);
       if (!x.allFinite() || x.head(3).norm() > 10 * kFarthest) return {};
       out.motion.way += x.head(3);
-      if (leans) out.motion.turn += Vec3(x.tail(3));
-      else out.motion.turn.z() += x[3];
+      if (clocks_) out.motion.turn.z() += x[3];
+      if (leans) out.motion.turn.head<2>() += x.tail(2);
       if (x.head(3).norm() < kStill * 1e3 && x.tail(unknowns - 3).norm() < kStill * 10) break;
     }
     out.rest.resize(n);
@@ -88,6 +94,8 @@ class Solver {
  private:
   /// By which the ball stands off its flank.
   [[nodiscard]] std::optional<double> distance(const Touch& touch, const Vec3& q) const {
+    if (touch.what == Touched::top) return q.z() - gear_.blank_top() - above_;
+    if (touch.what == Touched::rim) return radius(q) - gear_.outer_radius() - above_;
     const auto& f = gear_.rings()[std::size_t(touch.zone)].surface;
     const auto d = face_gear::flank_distance(f, touch.side, turned(q, -touch.tooth * gear_.pitch()));
     if (!d) return {};
@@ -98,6 +106,7 @@ class Solver {
   const TouchPlan& plan_;
   double above_;
   const std::vector<TouchResult>& results_;
+  bool clocks_;  ///< teeth were touched: the turn about z is asked, too
 };
 
 std::optional<Diagnostic> check_numbers(const TouchPlan& plan, const std::vector<TouchResult>& results,
@@ -116,6 +125,26 @@ std::optional<Diagnostic> check_numbers(const TouchPlan& plan, const std::vector
   return {};
 }
 
+/// Which touch does not agree with the others, where it is one alone.
+Diagnostic disagreement(const Solver& solver, const Solved& all, const std::vector<TouchResult>& results,
+                        const std::string& file) {
+  std::vector<int> without;
+  double left = 0;
+  for (int k = 0; k < int(results.size()); ++k)
+    if (const auto others = solver.solve(true, k); others && others->worst <= kWorstTouch) {
+      without.push_back(k);
+      left = others->worst;
+    }
+  if (without.size() != 1)
+    return fail_at({file, 1, 1}, "the touches do not agree: {:.4f} mm are left, at most {:g} mm{}", all.worst,
+                   kWorstTouch, without.empty() ? "" : "; too few touches to say which is wrong: touch more spaces");
+  const TouchResult& r = results[std::size_t(without.front())];
+  return fail_at(r.at,
+                 "touch {} does not agree with the others: without it they agree within {:.4f} mm, with it {:.4f} mm "
+                 "are left, at most {:g} mm; touch it again",
+                 r.number, left, all.worst, kWorstTouch);
+}
+
 }  // namespace
 
 Result<Placement> place_of_gear(const face_gear::FaceGear& gear, const TouchPlan& plan, const TouchOptions& options,
@@ -131,23 +160,7 @@ Result<Placement> place_of_gear(const face_gear::FaceGear& gear, const TouchPlan
   const auto upright = solver.solve(false, -1), leaning = solver.solve(true, -1);
   if (!upright || !leaning)
     return fail_at({file, 1, 1}, "no place of the gear answers the touches: another part, frame or unit");
-  if (leaning->worst > kWorstTouch) {
-    int worst = -1;
-    double left = leaning->worst;
-    for (int k = 0; k < int(results.size()); ++k)
-      if (const auto others = solver.solve(true, k); others && others->worst < left) {
-        left = others->worst;
-        worst = k;
-      }
-    const auto& r = results[std::size_t(std::max(worst, 0))];
-    if (worst >= 0 && left <= kWorstTouch)
-      return fail_at(r.at,
-                     "touch {} does not agree with the others: without it they agree within {:.4f} mm, with it "
-                     "{:.4f} mm are left, at most {:g} mm; touch it again",
-                     r.number, left, leaning->worst, kWorstTouch);
-    return fail_at({file, 1, 1}, "the touches do not agree: {:.4f} mm are left, at most {:g} mm", leaning->worst,
-                   kWorstTouch);
-  }
+  if (leaning->worst > kWorstTouch) return disagreement(solver, *leaning, results, file);
   Placement out;
   out.tilt_rad = leaning->motion.turn.head<2>();
   if (const double lean = out.tilt_rad.norm() * gear.outer_radius(); lean > kMostLean)
@@ -161,9 +174,10 @@ Result<Placement> place_of_gear(const face_gear::FaceGear& gear, const TouchPlan
   if (out.moved_mm.norm() > kFarthest)
     return fail_at({file, 1, 1}, "the gear stands {:.3f} mm off its place, at most {:g} mm", out.moved_mm.norm(),
                    kFarthest);
-  const double n = double(results.size()), scatter = upright->rms * std::sqrt(n / (n - 4));
+  const bool clocks = upright->covariance.rows() > 3;
+  const double n = double(results.size()), scatter = upright->rms * std::sqrt(n / (n - (clocks ? 4 : 3)));
   out.moved_sigma_mm = scatter * upright->covariance.diagonal().head(3).cwiseSqrt();
-  out.clocking_sigma_rad = scatter * std::sqrt(upright->covariance(3, 3));
+  if (clocks) out.clocking_sigma_rad = scatter * std::sqrt(upright->covariance(3, 3));
   return out;
 }
 

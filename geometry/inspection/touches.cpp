@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kStations = 24;  // of a way
 constexpr double kLeastApproach = 0.1, kAboveTops = 5, kStemShare = 0.8;
+constexpr double kBelowTop = 1, kBeyondRim = 3;  // of a touch of the blank's rim
 
 /// Distances of a place of space to what stands around one tooth space.
 class Space {
@@ -102,13 +103,45 @@ Diagnostic too_large(const face_gear::FaceGear& gear, const InspectionPoint& p, 
       std::floor(low * 1000) / 1000);
 }
 
+Status check_options(const face_gear::FaceGear& gear, const TouchOptions& options) {
+  if (!(options.ball_diameter_mm > 0)) return fail("the probe's ball has no diameter");
+  if (options.spaces < 3 || options.spaces > gear.parameters().teeth)
+    return fail("spaces = {} to touch is outside 3 .. {}", options.spaces, gear.parameters().teeth);
+  return Ok{};
+}
+
 }  // namespace
 
+Result<TouchPlan> plan_blank_touches(const face_gear::FaceGear& gear, const TouchOptions& options) {
+  if (const auto right = check_options(gear, options); !right) return right.error();
+  if (std::abs(gear.rings().front().surface.Cg) > 1e-12)
+    return fail("shaft_angle = {:g} deg: the blank has no flat top to touch, 90 deg has",
+                degrees(gear.parameters().shaft_angle_rad));
+  const double ball = 0.5 * options.ball_diameter_mm, above = ball + options.allowance_mm, top = gear.blank_top();
+  const auto& outer = gear.rings().back().zone;
+  const double middle = 0.5 * (outer.inner_radius_mm + outer.outer_radius_mm);
+  TouchPlan plan;
+  plan.clear_z_mm = top + kAboveTops;
+  plan.gap_mm = options.least_gap_mm;
+  for (int k = 0; k < options.spaces; ++k)
+    for (const Touched what : {Touched::top, Touched::rim}) {
+      const Vec3 outward = turned(Vec3::UnitX(), kTwoPi * k / options.spaces);
+      Touch touch;
+      touch.what = what;
+      touch.number = int(plan.touches.size()) + 1;
+      touch.approach_mm = options.approach_mm + (what == Touched::rim ? kBeyondRim : 0);
+      touch.normal = what == Touched::top ? Vec3(Vec3::UnitZ()) : outward;
+      touch.centre = what == Touched::top
+                         ? Vec3(middle * outward + Vec3(0, 0, top + above))
+                         : Vec3((outer.outer_radius_mm + above) * outward + Vec3(0, 0, top - kBelowTop));
+      plan.touches.push_back(touch);
+    }
+  return plan;
+}
+
 Result<TouchPlan> plan_touches(const face_gear::FaceGear& gear, const TouchOptions& options) {
-  if (!(options.ball_diameter_mm > 0)) return fail("the probe's ball has no diameter");
+  if (const auto right = check_options(gear, options); !right) return right.error();
   const int teeth = gear.parameters().teeth;
-  if (options.spaces < 3 || options.spaces > teeth)
-    return fail("spaces = {} to touch is outside 3 .. {}", options.spaces, teeth);
   const auto grid = inspection_grid(gear, {5, 9, 0.05});
   if (!grid) return grid.error();
   const std::vector<int> columns = gear.rings().size() > 1 ? std::vector<int>{4} : std::vector<int>{2, 6};

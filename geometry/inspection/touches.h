@@ -1,7 +1,8 @@
-// Touching teeth that are already there: where a probe's ball meets the exact flanks, and where the gear stands by what
-// it met.
+// Touching a blank, or teeth that are already there: where a probe's ball meets the exact surfaces, and where the gear
+// stands by what it met.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "geometry/face_gear/gear.h"
@@ -17,9 +18,12 @@ struct TouchOptions {
   int spaces = 4;               ///< tooth spaces, evenly around, 3 or more
 };
 
+enum class Touched : std::uint8_t { flank, top, rim };
+
 /// One touch; gear frame.
 struct Touch {
   int number = 0;  ///< from 1
+  Touched what = Touched::flank;
   int zone = 0, side = 1, tooth = 0;
   Vec3 centre = Vec3::Zero();   ///< of the ball when it touches
   Vec3 normal = Vec3::UnitZ();  ///< out of the material: the ball comes from there
@@ -39,6 +43,11 @@ struct TouchPlan {
 /// Refused: options outside their range, a ball that is too large for the space, with the largest that fits.
 [[nodiscard]] Result<TouchPlan> plan_touches(const face_gear::FaceGear& gear, const TouchOptions& options);
 
+/// The turned blank instead: its top in `spaces` places at the middle radius of the outer ring, and its rim below each
+/// of them. That places the gear, but for the turn of teeth that are not there yet.
+/// Refused: options outside their range, a shaft angle other than 90 deg, whose blank has no flat top.
+[[nodiscard]] Result<TouchPlan> plan_blank_touches(const face_gear::FaceGear& gear, const TouchOptions& options);
+
 /// One result: the centre of the ball as the control logged it, turned and moved into the gear frame of the job.
 struct TouchResult {
   int number = 0;  ///< of the plan
@@ -49,7 +58,7 @@ struct TouchResult {
 /// Where the gear stands against the gear frame of the job.
 struct Placement {
   Vec3 moved_mm = Vec3::Zero();  ///< of its origin
-  double clocking_rad = 0;       ///< turn about z
+  double clocking_rad = 0;       ///< turn about z; 0 where no teeth were touched
   Vec2 tilt_rad = Vec2::Zero();  ///< turn about x and y that the touches show beside; not part of the place
   double residual_mm = 0;        ///< largest that the place leaves of a touch
   double rms_mm = 0;

@@ -24,7 +24,7 @@ std::vector<std::string> header(const ProbeProgram& program) {
           fmt::format("T{} IS THE PROBE: BALL {:.4f} MM, LENGTH {:.4f} MM TO THE CENTRE OF THE BALL", program.tool,
                       program.ball_diameter_mm, program.probe_length_mm),
           "X Y Z ARE THE CENTRE OF THE BALL IN THE WORK OFFSET",
-          fmt::format("{} TOUCHES OF TEETH THAT ARE THERE: THE PROGRAM CUTS NOTHING", program.touches.size()),
+          fmt::format("{} TOUCHES OF THE PART: THE PROGRAM CUTS NOTHING", program.touches.size()),
           "NO MACHINE WAS AT HAND: RUN IT SLOWLY AND ABOVE THE PART FIRST"};
 }
 

@@ -143,6 +143,9 @@ TEST(ProbeCommand, WhatIsWrongIsRefusedAtItsPlace) {
       "clocking = 3.1 deg exceeds 3 deg, half a pitch of 60 teeth");
   has(with(fmt::format("[measured]\norigin = [{}, {}, {}]\nturn = 3.1\n", o.x(), o.y(), o.z())),
       "unknown key \"turn\"");
+  const auto blank = run({"--ball-diameter", "4", "--probe-length", "90", "--tool", "9", "--blank"});
+  EXPECT_EQ(blank.exit_code, 0) << blank.err;
+  EXPECT_NE(file_text(dir / "out/probe_setup.ngc").find("(TOUCH 8 RIM OF THE BLANK)"), std::string::npos);
 }
 
 }  // namespace

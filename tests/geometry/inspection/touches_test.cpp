@@ -116,6 +116,49 @@ TEST(Touches, AGearThatStandsAnywhereIsFound) {
   }
 }
 
+TEST(Touches, ABlankIsFoundByItsTopAndRim) {
+  const auto gear = test::made(test::small_spur());
+  const TouchOptions options{3.0, 0, 1, 0.05, 4};
+  const auto plan = inspection::plan_blank_touches(gear, options);
+  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_EQ(plan->touches.size(), 8u);
+  test::Random random(23);
+  for (int trial = 0; trial < 20; ++trial) {
+    // The ball on its line against a plane and a cylinder that stand off, written out.
+    const Vec3 moved = random.vector(0.8);
+    std::vector<TouchResult> results;
+    for (const auto& t : plan->touches) {
+      Vec3 centre = t.centre;
+      if (t.normal.z() > 0.5) {
+        centre.z() = gear.blank_top() + moved.z() + 1.5;
+      } else {
+        const Vec3 n = t.normal, from = t.centre - moved;
+        const double across = from.x() * n.y() - from.y() * n.x(), far = gear.outer_radius() + 1.5;
+        centre += (std::sqrt(far * far - across * across) - (from.x() * n.x() + from.y() * n.y())) * n;
+      }
+      EXPECT_LT((centre - t.centre).norm(), 0.9);
+      results.push_back({t.number, centre, {"r.txt", t.number, 1}});
+    }
+    const auto place = inspection::place_of_gear(gear, *plan, options, results, "r.txt");
+    ASSERT_TRUE(place) << place.error().text();
+    EXPECT_LT((place->moved_mm - moved).norm(), 1e-9);
+    EXPECT_EQ(place->clocking_rad, 0);
+    auto bad = results;
+    bad[3].centre += 0.3 * plan->touches[3].normal;
+    const auto refused = inspection::place_of_gear(gear, *plan, options, bad, "r.txt");
+    ASSERT_FALSE(refused);
+    EXPECT_NE(refused.error().message.find("not agree"), std::string::npos);
+  }
+  // The rim is left outwards and the top upwards: nothing of the blank is on the way.
+  for (const auto& t : plan->touches) {
+    const Vec3 start = t.start();
+    EXPECT_TRUE(radius(start) > gear.outer_radius() + 1.5 || start.z() > gear.blank_top() + 1.5);
+  }
+  const auto cone = inspection::plan_blank_touches(test::made(test::conical_gear()), options);
+  ASSERT_FALSE(cone);
+  EXPECT_EQ(cone.error().message, "shaft_angle = 75 deg: the blank has no flat top to touch, 90 deg has");
+}
+
 TEST(Touches, ScatterIsToldAndTheStatedDeviationsHold) {
   const auto gear = test::made(test::small_spur());
   TouchOptions options{1.0, 0, 1, 0.05, 12};

@@ -85,8 +85,7 @@ Walk walk_of(const std::string& text) {
     } else if (line.rfind("TCH PROBE 4.3 ", 0) == 0) {
       EXPECT_NEAR(*value_of(line, "DIST "), incremental.norm(), 2e-4);
       out.steps.push_back({'t', at + incremental, feed});
-    } else if (std::regex_search(line, m, std::regex("^(G0|G1|L|G43 H[0-9]+) ")) &&
-               line.find('A') == std::string::npos) {
+    } else if (std::regex_search(line, m, std::regex("^(G0|G1|L|G43 H[0-9]+) ")) && !value_of(line, "A")) {
       const bool rapid = m[1] == "G0" || m[1].str().rfind("G43", 0) == 0 || line.find("FMAX") != std::string::npos;
       if (!std::isnan(moved(at, line).x())) {
         at = moved(at, line);
@@ -155,12 +154,19 @@ TEST(ProbingTextLinuxcnc, TheInterpreterProbesThePlannedPlaces) {
   const auto text = probing::probing_text(sample(), "linuxcnc");
   ASSERT_TRUE(text);
   const Canonical seen = interpret(*text, "probing");
-  // Nothing trips in the stand-alone interpreter: it says so, or goes on; every probing move before is the program's.
+  // Nothing trips in the stand-alone interpreter: a touch ends where its way ends, and that is what is logged.
   std::vector<std::string> probes;
   for (const auto& line : seen.lines)
     if (line.find("STRAIGHT_PROBE") != std::string::npos) probes.push_back(line);
-  EXPECT_GE(probes.size(), 2u) << seen.exit << seen.messages;
-  ASSERT_FALSE(probes.empty());
+  // Two ways and one touch for each.
+  ASSERT_EQ(probes.size(), 9u) << seen.exit << seen.messages;
+  EXPECT_NE(probes[2].find("61.8000, -3.1234, -3.2500"), std::string::npos) << probes[2];
+  EXPECT_NE(probes[8].find("-1.5000, 62.5000, -3.0000"), std::string::npos) << probes[8];
+  std::vector<std::string> logged;
+  for (const auto& line : seen.lines)
+    if (line.find("LOG(\"") != std::string::npos) logged.push_back(line.substr(line.find("LOG(\"")));
+  ASSERT_EQ(logged.size(), 3u);
+  EXPECT_EQ(logged[0], "LOG(\"1 61.800000 -3.123400 -3.250000\")");
   EXPECT_NE(probes[0].find("62.0000, -1.2500, 12.5000"), std::string::npos) << probes[0];
   EXPECT_EQ(seen.messages.find("rror"), std::string::npos) << seen.messages;
 }
