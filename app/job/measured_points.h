@@ -10,6 +10,7 @@
 #include "app/job/measured_file.h"
 #include "geometry/inspection/flank_points.h"
 #include "geometry/inspection/tooth_index.h"
+#include "machines/toml/key_notes.h"
 
 namespace toothpath::job {
 
