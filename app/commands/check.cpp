@@ -4,6 +4,7 @@
 
 #include "app/base/output_dir.h"
 #include "app/job/file.h"
+#include "app/job/measured_points.h"
 #include "app/process/flow/graphics_blank.h"
 #include "app/process/flow/machine_moves.h"
 #include "app/process/flow/machine_picture.h"
@@ -50,7 +51,7 @@ std::vector<Diagnostic> read_inputs(Check& check) {
   if (auto* errors = read.refused()) return std::move(*errors);
   check.job = std::move(read).value();
   check.limits = process::proof_limits(check.job);
-  auto gear = flow::make_gear(check.job, request.measured_files, check.clock);
+  auto gear = flow::make_gear(check.job, request.measured, check.clock);
   if (auto* errors = gear.refused()) return std::move(*errors);
   check.gear = std::move(gear).value();
   auto loaded = check.clock.run("machine", [&] { return process::load_machine(check.job); });
@@ -62,7 +63,8 @@ std::vector<Diagnostic> read_inputs(Check& check) {
   if (!text) return {text.error()};
   check.text = std::move(text.value());
   if (!process::wants_scene(request)) return {};
-  auto meshes = check.clock.run("stock and fixture meshes", [&] { return process::load_scene(request); });
+  auto meshes = check.clock.run("stock and fixture meshes",
+                                [&] { return process::load_scene(request, check.job.setup->clocking_rad); });
   if (!meshes) return {meshes.error()};
   check.scene = std::move(meshes.value());
   const auto placed = check.clock.run("stock and fixture meshes", [&]() -> Status {
@@ -155,7 +157,7 @@ Status write_results(Check& check, app::OutputDir& output, std::string& json) {
 
 CommandOutcome check_program(const CheckRequest& request) {
   std::vector<std::string> inputs = {request.job_file, request.program_file};
-  for (const auto* more : {&request.stock_files, &request.fixture_files, &request.measured_files})
+  for (const auto* more : {&request.stock_files, &request.fixture_files, &request.measured.files})
     inputs.insert(inputs.end(), more->begin(), more->end());
   auto output = app::OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp", kSheet}, inputs);
   if (!output) return failed(output.error());
@@ -192,7 +194,9 @@ void add_check(Commands& commands) {
             "--fixture", request.fixture_files,
             "closed mesh of what holds the work and turns with it (STL or OBJ, mm, gear frame); repeatable. Facets are "
             "taken as exact: what they leave out of the true part must lie within the clearance of the job");
-        set.files("--measured", request.measured_files, "measured deviations that the program answers (see correct)");
+        set.files("--measured", request.measured.files, "what was measured, which the program answers (see correct)");
+        set.number("--ball-diameter", request.measured.ball_diameter_mm,
+                   "the measured points are centres of a ball of this diameter (see correct)", job::kBallDiameter);
       },
       check_program));
 }

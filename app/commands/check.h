@@ -2,13 +2,14 @@
 #pragma once
 
 #include "app/commands/command.h"
+#include "app/job/measured_file.h"
 #include "app/process/scene.h"
 
 namespace toothpath::commands {
 
 struct CheckRequest : JobRequest, process::SceneFiles {
   std::string program_file;
-  std::vector<std::string> measured_files;  ///< measured deviations that the program answers, in the order of the cuts
+  job::MeasuredInput measured;  ///< what the flanks that the program cuts answer
 };
 
 /// Reads any NC program in the dialect of the job's machine back and checks it: gouges, clearance, rapids, left

@@ -1,6 +1,7 @@
 // `toothpath correct JOB --measured FILE --out DIR`: `run` again, with flanks that answer a measurement.
 #include "app/commands/run.h"
 #include "app/commands/surface.h"
+#include "app/job/measured_points.h"
 
 namespace toothpath::commands {
 
@@ -9,8 +10,12 @@ void add_correct(Commands& commands) {
       "correct", "the whole way again, with flanks that answer a measurement",
       [](OptionSet& set, RunRequest& request) {
         job_options(set, request);
-        set.required_files("--measured", request.measured_files,
-                           "measured grid: inspection.csv with a column deviation_um; several: one after each cut");
+        set.required_files("--measured", request.measured.files,
+                           "what was measured: inspection.csv with a column deviation_um, results as DMIS, or lines "
+                           "x y z [i j k]; several: one after each cut");
+        set.number("--ball-diameter", request.measured.ball_diameter_mm,
+                   "the measured points are centres of a ball of this diameter, not places of the surface",
+                   job::kBallDiameter);
         cad_options(set, request.cad);
       },
       run_job));

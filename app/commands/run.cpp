@@ -82,7 +82,7 @@ CommandOutcome finish(flow::Run& run, const RunRequest& request, app::OutputDir&
 }  // namespace
 
 CommandOutcome run_job(const RunRequest& request) {
-  std::vector<std::string> inputs = request.measured_files;
+  std::vector<std::string> inputs = request.measured.files;
   inputs.push_back(request.job_file);
   auto output = app::OutputDir::open(request.out_dir, run_outputs(), inputs, app::kPrevious);
   if (!output) return failed(output.error());

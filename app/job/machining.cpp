@@ -4,6 +4,7 @@
 #include <cmath>
 #include <regex>
 
+#include "app/job/measured_setup.h"
 #include "app/job/tables.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
@@ -278,7 +279,7 @@ void check_regions(toml::TableReader& root, const std::vector<path::MillingOpera
         missing);
 }
 
-joints::Setup read_setup(toml::TableReader& table) {
+joints::Setup read_setup(toml::TableReader& table, Job& job) {
   joints::Setup setup;
   if (const auto origin = table.numbers("origin", 3, kPosition))
     setup.origin_mm = Vec3((*origin)[0], (*origin)[1], (*origin)[2]);
@@ -294,6 +295,7 @@ joints::Setup read_setup(toml::TableReader& table) {
   }
   if (const auto at = table.numbers("work_offset_at", 3, kPosition))
     setup.work_offset_at_mm = Vec3((*at)[0], (*at)[1], (*at)[2]);
+  if (const auto name = table.optional_text("measured")) take_measured(table, *name, job, setup);
   table.finish();
   return setup;
 }

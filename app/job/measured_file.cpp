@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/units.h"
+#include "app/job/measured_points.h"
 #include "app/report/svg/html_text.h"
 #include "machines/toml/regular_file.h"
 
@@ -180,12 +181,6 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
   return measured;
 }
 
-Result<MeasuredFlanks> read_measured(const std::string& path, const face_gear::FaceGear& gear) {
-  const auto text = toml::read_input_file(path, kMostMeasuredBytes);
-  if (!text) return text.error();
-  return parse_measured(*text, path, gear);
-}
-
 Result<FittedCorrection> fit_correction(const face_gear::FaceGear& gear,
                                         const std::vector<MeasuredFlanks>& measurements) {
   const auto& points = measurements.front().points;
@@ -207,7 +202,7 @@ Result<FittedCorrection> fit_correction(const face_gear::FaceGear& gear,
               {points[k].row, points[k].column, points[k].theta, std::hypot(points[k].p.x(), points[k].p.y()), sum[k]});
       auto fit = face_gear::FlankCorrection::fit(flank, gear.rings()[zone].surface.shaper.theta_t);
       if (!fit) return at(measurements.front().file, 1, 0, "zone {}, flank {}: {}", zone, side, fit.error().message);
-      result.flanks.push_back({int(zone), side, fit->residual()});
+      result.flanks.push_back({int(zone), side, measurements.back().file, 1, fit->residual()});
       (side > 0 ? ring.plus : ring.minus) = std::move(*fit);
     }
     result.rings.push_back(std::make_shared<face_gear::RingCorrection>(std::move(ring)));
@@ -215,36 +210,76 @@ Result<FittedCorrection> fit_correction(const face_gear::FaceGear& gear,
   return result;
 }
 
-Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal, const std::vector<std::string>& files) {
-  CorrectedGear corrected{nominal, {}, {}};
-  for (const auto& file : files) {
-    auto measured = read_measured(file, nominal);
-    if (!measured) return measured.error();
-    corrected.measurements.push_back(std::move(*measured));
+namespace {
+
+/// The second of two corrections on top of the first.
+void add(FittedCorrection& sum, FittedCorrection more) {
+  for (std::size_t k = 0; k < more.rings.size(); ++k)
+    if (k < sum.rings.size())
+      sum.rings[k] = std::make_shared<face_gear::RingCorrection>(face_gear::RingCorrection{
+          sum.rings[k]->plus.plus(more.rings[k]->plus), sum.rings[k]->minus.plus(more.rings[k]->minus)});
+    else sum.rings.push_back(more.rings[k]);
+  sum.flanks.insert(sum.flanks.end(), more.flanks.begin(), more.flanks.end());
+  sum.warnings.insert(sum.warnings.end(), more.warnings.begin(), more.warnings.end());
+  if (!more.index.pitch.empty()) sum.index = std::move(more.index);
+}
+
+}  // namespace
+
+Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal, const MeasuredInput& measured) {
+  CorrectedGear corrected{nominal, {}, measured.files, {}};
+  std::vector<MeasuredFlanks> grids;
+  std::vector<FittedCorrection> fits;
+  for (const auto& file : measured.files) {
+    const auto text = toml::read_input_file(file, kMostMeasuredBytes);
+    if (!text) return text.error();
+    if (looks_like_grid(*text)) {
+      if (measured.ball_diameter_mm)
+        return at(file, 1, 0, "an inspection grid holds deviations: a ball's diameter is for files of points");
+      auto grid = parse_measured(*text, file, nominal);
+      if (!grid) return grid.error();
+      grids.push_back(std::move(*grid));
+      continue;
+    }
+    const auto points = parse_measured_points(*text, file, nominal, measured.ball_diameter_mm.value_or(0));
+    if (!points) return points.error();
+    auto fit = fit_points(nominal, *points);
+    if (!fit) return fit.error();
+    fits.push_back(std::move(*fit));
   }
-  auto fit = fit_correction(nominal, corrected.measurements);
-  if (!fit) return fit.error();
-  corrected.fit = std::move(*fit);
+  if (!grids.empty()) {
+    auto fit = fit_correction(nominal, grids);
+    if (!fit) return fit.error();
+    add(corrected.fit, std::move(*fit));
+    corrected.grid = grids.front().points;
+  } else {
+    auto grid = inspection::inspection_grid(nominal);
+    if (!grid) return grid.error();
+    corrected.grid = std::move(*grid);
+  }
+  for (auto& fit : fits) add(corrected.fit, std::move(fit));
   corrected.gear = nominal.corrected(corrected.fit.rings);
   return corrected;
 }
 
-std::string correction_json(const FittedCorrection& fit, const std::vector<MeasuredFlanks>& measurements) {
+std::string correction_json(const CorrectedGear& corrected) {
   using Json = nlohmann::ordered_json;
+  const FittedCorrection& fit = corrected.fit;
   Json files = Json::array(), flanks = Json::array();
-  for (const auto& m : measurements) files.push_back(svg::valid_utf8(m.file));
+  for (const auto& file : corrected.files) files.push_back(svg::valid_utf8(file));
   for (const auto& f : fit.flanks) {
     Json offsets = Json::array();
-    for (const auto& p : measurements.front().points)
+    for (const auto& p : corrected.grid)
       if (p.zone == f.zone && p.side == f.side)
         offsets.push_back(
             {{"row", p.row},
              {"column", p.column},
-             {"offset_um",
-              app::um(fit.rings[std::size_t(f.zone)]->side(f.side).at(p.theta, std::hypot(p.p.x(), p.p.y())).value)}});
+             {"offset_um", app::um(fit.rings[std::size_t(f.zone)]->side(f.side).at(p.theta, radius(p.p)).value)}});
     const auto& r = f.residual;
     flanks.push_back({{"zone", f.zone},
                       {"side", f.side},
+                      {"file", svg::valid_utf8(f.file)},
+                      {"teeth", f.teeth},
                       {"basis", "tensor Chebyshev"},
                       {"profile_degree", r.profile_degree},
                       {"lead_degree", r.lead_degree},

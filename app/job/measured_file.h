@@ -1,7 +1,9 @@
-// Measured deviations of the flanks: the inspection grid as CSV with one more column, read back and fitted.
+// Measured deviations of the flanks: the inspection grid as CSV with one more column, read back and fitted; files of
+// points stand in measured_points.h.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "geometry/face_gear/flank_correction.h"
 #include "geometry/face_gear/gear.h"
 #include "geometry/inspection/grid.h"
+#include "geometry/inspection/tooth_index.h"
 
 namespace toothpath::job {
 
@@ -30,17 +33,18 @@ struct MeasuredFlanks {
 [[nodiscard]] Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file,
                                                     const face_gear::FaceGear& gear);
 
-/// The same from a file; one that cannot be read is `file_access`.
-[[nodiscard]] Result<MeasuredFlanks> read_measured(const std::string& path, const face_gear::FaceGear& gear);
-
 /// The fit of one flank, for the report.
 struct FittedFlank {
   int zone = 0, side = 1;
+  std::string file;  ///< that was fitted; of several grids the last
+  int teeth = 1;     ///< on which it was measured
   face_gear::CorrectionResidual residual;
 };
 struct FittedCorrection {
   std::vector<std::shared_ptr<const face_gear::RingCorrection>> rings;
   std::vector<FittedFlank> flanks;
+  inspection::IndexOfTeeth index = {};  ///< of the last file that measured several teeth
+  std::vector<std::string> warnings = {};
 };
 
 /// Fits the sum of the measurements: each was taken on a gear cut with the corrections of all before it, so their
@@ -48,18 +52,25 @@ struct FittedCorrection {
 [[nodiscard]] Result<FittedCorrection> fit_correction(const face_gear::FaceGear& gear,
                                                       const std::vector<MeasuredFlanks>& measurements);
 
+/// The files that a command names, in the order of the cuts.
+struct MeasuredInput {
+  std::vector<std::string> files;
+  std::optional<double> ball_diameter_mm = {};  ///< points are the centres of a ball of that diameter
+};
+
 /// A gear whose target answers measured files.
 struct CorrectedGear {
   face_gear::FaceGear gear;
   FittedCorrection fit;
-  std::vector<MeasuredFlanks> measurements;
+  std::vector<std::string> files;
+  std::vector<inspection::InspectionPoint> grid;  ///< where correction.json tells the target
 };
-/// Reads the files in their order and fits them; errors as above.
-[[nodiscard]] Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal,
-                                                 const std::vector<std::string>& files);
+/// Reads the files in their order, grids or points each, and fits them; the fits add up. Errors as above; a file that
+/// cannot be read is `file_access`; a ball's diameter beside a grid, which holds deviations already.
+[[nodiscard]] Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal, const MeasuredInput& measured);
 
 /// correction.json: files, and for every flank degrees, sizes measured and left, and the offset of the target at the
 /// grid, um. Ends in a line feed.
-[[nodiscard]] std::string correction_json(const FittedCorrection& fit, const std::vector<MeasuredFlanks>& measurements);
+[[nodiscard]] std::string correction_json(const CorrectedGear& corrected);
 
 }  // namespace toothpath::job

@@ -27,7 +27,9 @@ struct ToolContext {
 /// Refused, at the operations: regions that no finishing operation covers, where anything finishes at all.
 void check_regions(toml::TableReader& root, const std::vector<path::MillingOperation>& operations);
 
-[[nodiscard]] joints::Setup read_setup(toml::TableReader& table);
+/// [setup], with the file of what was measured where it names one. @param job  its file and gear are known already;
+/// its warnings say where the part stands
+[[nodiscard]] joints::Setup read_setup(toml::TableReader& table, Job& job);
 [[nodiscard]] shaper::Shaping read_shaping(toml::TableReader& table);
 [[nodiscard]] ContactSettings read_contact(toml::TableReader& table);
 [[nodiscard]] VerifySettings read_verify(toml::TableReader& table, bool bevel);

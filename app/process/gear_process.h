@@ -18,6 +18,7 @@
 #include "app/base/output_dir.h"
 #include "app/base/stage_clock.h"
 #include "app/job/job.h"
+#include "app/job/measured_file.h"
 #include "app/process/cut_flanks.h"
 #include "app/process/gear_of_job.h"
 #include "app/process/opening_and_end.h"
@@ -94,6 +95,8 @@ class GearMilling {
 /// What answering a measurement came to.
 struct Correction {
   std::vector<report::CorrectionRow> rows;
+  inspection::IndexOfTeeth index = {};  ///< where several teeth were measured
+  std::vector<std::string> warnings = {};
   std::string json;  ///< correction.json
 };
 
@@ -124,8 +127,7 @@ class GearProcess {
   [[nodiscard]] virtual const PartFacts& part() const = 0;
   /// From now on the flanks to cut answer measured files, in the order of the cuts. Stage "correction". Refused: what
   /// they refuse; a gear type that cannot.
-  [[nodiscard]] virtual Result<Correction> correct(const std::vector<std::string>& measured_files,
-                                                   app::StageClock& clock) = 0;
+  [[nodiscard]] virtual Result<Correction> correct(const job::MeasuredInput& measured, app::StageClock& clock) = 0;
 
   /// The body that links go around, on this machine.
   [[nodiscard]] virtual joints::ClearanceBody link_body(const machines::Machine& machine) const = 0;

@@ -18,10 +18,12 @@ constexpr std::size_t kGroup = 32;                    // motions that are looked
 constexpr double kTip = 1e-4, kAxis = 2e-6;           // mm, rad: motions of feeds; rapids are cut 50 times coarser
 constexpr std::size_t kMostRows = 20;
 
-Status load(const std::vector<std::string>& files, std::vector<SceneMesh>& out) {
+Status load(const std::vector<std::string>& files, double turn, std::vector<SceneMesh>& out) {
   for (const auto& file : files) {
     auto mesh = mesh::load_mesh(file);
     if (!mesh) return mesh.error();
+    if (turn != 0)
+      for (Vec3& v : mesh->vertices) v = turned(v, turn);
     auto distance = std::make_unique<clearance::MeshDistance>(*mesh);
     out.push_back({std::move(*mesh), std::move(distance)});
   }
@@ -221,12 +223,12 @@ proof::WorstPlace worst_place(const clearance::MeshMeeting& m, const std::string
 
 }  // namespace
 
-Result<Scene> load_scene(const SceneFiles& request) {
+Result<Scene> load_scene(const SceneFiles& request, double clocking_rad) {
   Scene scene;
   scene.fixture_files = request.fixture_files;
   scene.stock_files = request.stock_files;
-  if (const auto s = load(request.fixture_files, scene.fixture); !s) return s.error();
-  if (const auto s = load(request.stock_files, scene.stock); !s) return s.error();
+  if (const auto s = load(request.fixture_files, -clocking_rad, scene.fixture); !s) return s.error();
+  if (const auto s = load(request.stock_files, 0, scene.stock); !s) return s.error();
   return scene;
 }
 

@@ -42,9 +42,10 @@ struct SceneFiles {
   return !request.stock_files.empty() || !request.fixture_files.empty();
 }
 
-/// Loads what the request names; nothing is loaded or built when it names nothing. Errors: those of load_mesh, located
-/// in the file.
-[[nodiscard]] Result<Scene> load_scene(const SceneFiles& request);
+/// Loads what the request names; nothing is loaded or built when it names nothing. A stock has the teeth of the gear
+/// and turns with it; fixtures stay where they are when the gear is turned by `clocking_rad`. Errors: those of
+/// load_mesh, located in the file.
+[[nodiscard]] Result<Scene> load_scene(const SceneFiles& request, double clocking_rad = 0);
 
 /// What a check of the meshes must know of gear and tools.
 struct SceneGear {

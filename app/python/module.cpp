@@ -159,7 +159,7 @@ Report run(const std::filesystem::path& job, const std::filesystem::path& out, c
   request.job_file = job.string();
   request.out_dir = out.string();
   request.restart = restart;
-  for (const auto& file : measured) request.measured_files.push_back(file.string());
+  for (const auto& file : measured) request.measured.files.push_back(file.string());
   request.finished = [&made](flow::Run& run) {
     made.report = run.report;
     made.surface = std::move(run.surface);

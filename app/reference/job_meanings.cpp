@@ -60,6 +60,9 @@ constexpr Meaning kJobMeanings[] = {
     {"setup.pivot_error",
      "How far the rotary axes may stand beside where the machine file says; stated, it counts in the ledger."},
     {"setup.work_offset", "Name of the work offset: G54, G59.1, G54.1 P3, of Heidenhain a number."},
+    {"setup.measured",
+     "File beside the job with what was measured of the part as it stands: origin and clocking (docs/probing.md). It "
+     "takes the place of `origin`, and the program is made and proven for it."},
     {"setup.work_offset_at", "Its origin in machine coordinates: the numbers of the program are relative to it."},
     {"tool", "A cutter with its neck and holder; all of them are checked."},
     {"tool.number", "Number of the tool (T word); operations name it."},

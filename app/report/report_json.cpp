@@ -43,6 +43,53 @@ Json place_json(const proof::WorstPlace& place) {
           {"point", vector_json(place.point)}};
 }
 
+void add_correction_rows(Json& json, const RunReport& r) {
+  if (!r.correction.empty()) {
+    Json flanks = Json::array();
+    for (const auto& c : r.correction)
+      flanks.push_back({{"zone", c.zone},
+                        {"side", c.side},
+                        {"file", svg::valid_utf8(c.file)},
+                        {"teeth", c.teeth},
+                        {"profile_degree", c.fit.profile_degree},
+                        {"lead_degree", c.fit.lead_degree},
+                        {"measured_max_um", c.fit.measured_max_mm * 1000},
+                        {"measured_rms_um", c.fit.measured_rms_mm * 1000},
+                        {"residual_max_um", c.fit.residual_max_mm * 1000},
+                        {"residual_rms_um", c.fit.residual_rms_mm * 1000}});
+    json["correction"] = std::move(flanks);
+  }
+}
+
+/// Pitch and run-out of a measured gear.
+void add_index(Json& json, const inspection::IndexOfTeeth& index) {
+  if (index.pitch.empty()) return;
+  Json pitch = Json::array(), run_out = Json::array();
+  for (const auto& p : index.pitch)
+    pitch.push_back({{"zone", p.zone},
+                     {"side", p.side},
+                     {"radius", p.radius_mm},
+                     {"teeth", p.teeth},
+                     {"pairs", p.pairs},
+                     {"complete", p.complete},
+                     {"single_um", app::um(p.single_mm)},
+                     {"tooth", p.single_tooth},
+                     {"total_um", app::um(p.total_mm)}});
+  for (const auto& r : index.run_out)
+    run_out.push_back({{"zone", r.zone},
+                       {"radius", r.radius_mm},
+                       {"spaces", r.spaces},
+                       {"complete", r.complete},
+                       {"run_out_um", app::um(r.run_out_mm)}});
+  json["pitch"] = std::move(pitch);
+  json["run_out"] = std::move(run_out);
+}
+
+void add_correction(Json& json, const RunReport& r) {
+  add_correction_rows(json, r);
+  add_index(json, r.index);
+}
+
 void add_proof(Json& json, const RunReport& r) {
   if (r.gouge) {
     json["gouge_um"] = {{"measured", app::um(r.gouge->measured_mm)},
@@ -399,19 +446,7 @@ std::string report_json(const RunReport& r) {
     json["ledger"] = std::move(ledger);
     json["assumed"] = text_list(r.assumed);
   }
-  if (!r.correction.empty()) {
-    Json flanks = Json::array();
-    for (const auto& c : r.correction)
-      flanks.push_back({{"zone", c.zone},
-                        {"side", c.side},
-                        {"profile_degree", c.fit.profile_degree},
-                        {"lead_degree", c.fit.lead_degree},
-                        {"measured_max_um", c.fit.measured_max_mm * 1000},
-                        {"measured_rms_um", c.fit.measured_rms_mm * 1000},
-                        {"residual_max_um", c.fit.residual_max_mm * 1000},
-                        {"residual_rms_um", c.fit.residual_rms_mm * 1000}});
-    json["correction"] = std::move(flanks);
-  }
+  add_correction(json, r);
   add_solid(json, r);
   json["warnings"] = text_list(r.warnings);
   json["files"] = text_list(r.files);

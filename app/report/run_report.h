@@ -15,6 +15,7 @@
 #include "app/report/section.h"
 #include "cam/proof/verification.h"
 #include "geometry/face_gear/flank_correction.h"
+#include "geometry/inspection/tooth_index.h"
 #include "postproc/bodies/moves.h"
 #include "postproc/joints/program.h"
 #include "postproc/readback/conditions.h"
@@ -38,6 +39,8 @@ struct OperationReport {
 /// A flank that was corrected by a measurement.
 struct CorrectionRow {
   int zone = 0, side = 1;
+  std::string file;  ///< what was fitted
+  int teeth = 1;     ///< on which it was measured
   face_gear::CorrectionResidual fit;
 };
 
@@ -134,6 +137,7 @@ struct RunReport {
   std::vector<SceneVerdict> scene;  ///< fixture and stock, where meshes of them were given
   std::optional<bodies::MovesFound> machine_moves;  ///< none where no program was proven
   std::vector<CorrectionRow> correction;            ///< empty: the nominal flanks are the target
+  inspection::IndexOfTeeth index;                   ///< pitch and run-out, where several teeth were measured
   std::optional<CadReport> cad;                     ///< none where no solid was asked for
   std::optional<RoughedReport> roughed;             ///< none where it was not asked for, and where nothing roughs
   std::vector<std::string> assumed, warnings;

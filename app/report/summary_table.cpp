@@ -104,6 +104,18 @@ void made_rows(std::string& out, const RunReport& report) {
             "zone {}, flank {:+}: measured max {:.2f} um, rms {:.2f} um; not followed max {:.2f} um, rms {:.2f} um",
             c.zone, c.side, c.fit.measured_max_mm * app::kUm, c.fit.measured_rms_mm * app::kUm,
             c.fit.residual_max_mm * app::kUm, c.fit.residual_rms_mm * app::kUm));
+  for (const auto& p : report.index.pitch)
+    row(out, "pitch",
+        fmt::format("zone {}, flank {:+}, radius {:.3f} mm: f_p {}, F_p {:.2f} um; {} teeth measured{}", p.zone, p.side,
+                    p.radius_mm,
+                    p.pairs ? fmt::format("{:.2f} um (teeth {} to {})", p.single_mm * app::kUm, p.single_tooth,
+                                          p.single_tooth + 1)
+                            : "unknown (no neighbours)",
+                    p.total_mm * app::kUm, p.teeth, p.complete ? "" : ": not all, F_p may be larger"));
+  for (const auto& r : report.index.run_out)
+    row(out, "run-out",
+        fmt::format("zone {}, radius {:.3f} mm: F_r {:.2f} um; {} spaces measured{}", r.zone, r.radius_mm,
+                    r.run_out_mm * app::kUm, r.spaces, r.complete ? "" : ": not all, F_r may be larger"));
   if (const auto& cad = report.cad)
     row(out, "solid",
         fmt::format(

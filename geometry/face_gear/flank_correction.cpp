@@ -45,6 +45,12 @@ double FlankCorrection::top(double r, double* slope) const {
   return top_[0] + inside * (top_[1] + inside * (top_[2] + inside * top_[3])) + beyond * d;
 }
 
+FlankCorrection FlankCorrection::plus(const FlankCorrection& other) const {
+  FlankCorrection sum = *this;
+  sum.other_ = std::make_shared<FlankCorrection>(other_ ? other_->plus(other) : other);
+  return sum;
+}
+
 Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> points, double theta_t,
                                              CorrectionDegrees most) {
   std::set<int> rows, columns;
@@ -67,7 +73,7 @@ Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> poi
   f.fit_top(points, *rows.rbegin());
 
   Range s;
-  for (const auto& p : points) s.add(f.profile_at(p));
+  for (const auto& p : points) s.add(f.profile_at(p.theta, p.radius_mm));
   f.s_mid_ = s.middle();
   f.s_half_ = s.half();
   f.profile_ = std::clamp(most.profile, 0, int(rows.size()) - 2);
@@ -77,8 +83,8 @@ Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> poi
   return f;
 }
 
-double FlankCorrection::profile_at(const FlankDeviation& p) const {
-  return (theta_t_ - p.theta) / (theta_t_ - top(p.radius_mm, nullptr));
+double FlankCorrection::profile_at(double theta, double radius_mm) const {
+  return (theta_t_ - theta) / (theta_t_ - top(radius_mm, nullptr));
 }
 
 /// theta at the tip over the radius: the top row of the grid, which keeps a margin; the scale of s takes that up.
@@ -97,18 +103,24 @@ void FlankCorrection::fit_top(std::span<const FlankDeviation> points, int top_ro
   for (std::size_t k = 0; k < 4; ++k) top_[k] = line[Eigen::Index(k)];
 }
 
+void FlankCorrection::products_at(double theta, double radius_mm, Eigen::Ref<Eigen::RowVectorXd> row) const {
+  thread_local std::vector<double> X, dX, Y, dY;
+  chebyshev((profile_at(theta, radius_mm) - s_mid_) / s_half_, profile_, X, dX);
+  chebyshev((radius_mm - r_mid_) / r_half_, lead_, Y, dY);
+  Eigen::Index column = 0;
+  for (const double x : X)
+    for (const double y : Y) row[column++] = x * y;
+}
+
 void FlankCorrection::fit_series(std::span<const FlankDeviation> points) {
   const auto n = Eigen::Index(points.size()), width = Eigen::Index((profile_ + 1) * (lead_ + 1));
   Eigen::MatrixXd A(n, width);
   Eigen::VectorXd b(n);
-  std::vector<double> X, dX, Y, dY;
+  Eigen::RowVectorXd row(width);
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto& p = points[std::size_t(k)];
-    chebyshev((profile_at(p) - s_mid_) / s_half_, profile_, X, dX);
-    chebyshev((p.radius_mm - r_mid_) / r_half_, lead_, Y, dY);
-    Eigen::Index column = 0;
-    for (const double x : X)
-      for (const double y : Y) A(k, column++) = x * y;
+    products_at(p.theta, p.radius_mm, row);
+    A.row(k) = row;
     b[k] = -p.deviation_mm;
   }
   const Eigen::VectorXd c = A.colPivHouseholderQr().solve(b);
@@ -138,7 +150,12 @@ FlankCorrection::Offset FlankCorrection::at(double theta, double radius_mm) cons
       d_r += coefficients_[k] * X[i] * dY[j];
     }
   d_s /= s_half_;
-  return {value, -d_s / height, d_r / r_half_ + d_s * s * slope / height};
+  Offset sum{value, -d_s / height, d_r / r_half_ + d_s * s * slope / height};
+  if (other_) {
+    const Offset more = other_->at(theta, radius_mm);
+    sum = {sum.value + more.value, sum.d_theta + more.d_theta, sum.d_radius + more.d_radius};
+  }
+  return sum;
 }
 
 }  // namespace toothpath::face_gear

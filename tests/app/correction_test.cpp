@@ -12,6 +12,7 @@
 #include "cam/cut/swept_path.h"
 #include "postproc/controls/of_machine.h"
 #include "tests/app/program.h"
+#include "tests/geometry/inspection/measured_teeth.h"
 #include "tests/support/inspection_points.h"
 
 namespace toothpath::test {
@@ -128,7 +129,7 @@ TEST(Correction, TwentyMicrometresAreGoneAfterOneLoop) {
   write_file(dir / "measured.csv", csv);
 
   request.out_dir = dir / "second";
-  request.measured_files = {dir / "measured.csv"};
+  request.measured.files = {dir / "measured.csv"};
   const auto second = commands::run_job(request);
   ASSERT_EQ(second.exit_code, app::ExitCode::ok) << to_text(second.errors);
   const auto report = nlohmann::json::parse(second.report_json);
@@ -245,6 +246,108 @@ TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
   const auto absent = run_program({"correct", dir / "job.toml", "--measured", dir / "none.csv", "--out", dir / "out"});
   EXPECT_EQ(absent.exit_code, 4);
   EXPECT_EQ(run_program({"correct", dir / "job.toml", "--out", dir / "out"}).exit_code, 2);
+}
+
+/// What a measuring machine hands out of `teeth` teeth: the grid with the process error, every tooth off its place.
+std::vector<SeenPoint> measured_teeth(const face_gear::FaceGear& gear,
+                                      const std::vector<inspection::InspectionPoint>& grid, int teeth, double ball) {
+  PlantedErrors errors;
+  Random random(29);
+  for (int k = 0; k < teeth; ++k) errors.index.push_back(random(-0.01, 0.01));
+  double mean = 0;
+  for (const double off : errors.index) mean += off / teeth;
+  for (double& off : errors.index) off -= mean;
+  errors.shape = [](const auto& p) { return 0.2 * process_error(p.side, p.row / 4.0, p.column / 8.0); };
+  return seen(grid, teeth_of(teeth), gear.pitch(), gear.rings()[0].surface.M2, errors, ball);
+}
+
+std::string dmis_of(const std::vector<SeenPoint>& points) {
+  std::string text = "DMISMN/'results',05.2\nUNITS/MM,ANGDEC\n";
+  for (std::size_t k = 0; k < points.size(); ++k)
+    text += fmt::format("FA(P{})=FEAT/POINT,CART,{:.6f},{:.6f},{:.6f},$\n{:.8f},{:.8f},{:.8f}\n", k, points[k].p.x(),
+                        points[k].p.y(), points[k].p.z(), points[k].n.x(), points[k].n.y(), points[k].n.z());
+  return text + "ENDFIL\n";
+}
+
+std::string plain_of(const std::vector<SeenPoint>& points, bool normals) {
+  std::string text = "# measured\n";
+  for (const auto& s : points) {
+    text += fmt::format("{:.6f} {:.6f} {:.6f}", s.p.x(), s.p.y(), s.p.z());
+    if (normals) text += fmt::format(" {:.8f} {:.8f} {:.8f}", s.n.x(), s.n.y(), s.n.z());
+    text += "\n";
+  }
+  return text;
+}
+
+TEST(Correction, PointsOfManyTeethGiveTheSameTargetAsTheGrid) {
+  const TestDir dir;
+  write_file(dir / "job.toml", quick_job());
+  const Case c = read_case(dir / "job.toml");
+  const auto grid = grid_of(*c.gear, 5, 9);
+  write_file(dir / "grid.csv", measured_csv(grid, [](const inspection::InspectionPoint& p) {
+               return 0.2 * process_error(p.side, p.row / 4.0, p.column / 8.0);
+             }));
+  write_file(dir / "surface.dmo", dmis_of(measured_teeth(*c.gear, grid, 60, 0)));
+  write_file(dir / "surface.txt", plain_of(measured_teeth(*c.gear, grid, 60, 0), false));
+  write_file(dir / "centres.txt", plain_of(measured_teeth(*c.gear, grid, 60, 0.5), true));
+  const auto of_grid = job::correct_gear(*c.gear, {{dir / "grid.csv"}, {}});
+  ASSERT_TRUE(of_grid) << of_grid.error().text();
+  struct File {
+    std::string name;
+    std::optional<double> ball;
+  };
+  for (const File& file : {File{"surface.dmo", {}}, File{"surface.txt", {}}, File{"centres.txt", 1.0}}) {
+    const auto of_points = job::correct_gear(*c.gear, {{dir / file.name}, file.ball});
+    ASSERT_TRUE(of_points) << of_points.error().text();
+    double worst = 0;
+    for (const auto& p : grid)
+      worst = std::max(worst, std::abs(of_points->fit.rings[0]->side(p.side).at(p.theta, radius(p.p)).value -
+                                       of_grid->fit.rings[0]->side(p.side).at(p.theta, radius(p.p)).value));
+    std::printf("  %s: the target is that of the grid within %.4f um; F_p %.3f um\n", file.name.c_str(), worst * 1000,
+                of_points->fit.index.pitch.at(0).total_mm * 1000);
+    EXPECT_LT(worst, 2e-5);
+    ASSERT_EQ(of_points->fit.index.pitch.size(), 2u);
+    EXPECT_TRUE(of_points->fit.index.pitch[0].complete);
+    EXPECT_GT(of_points->fit.index.pitch[0].total_mm, 0.015);
+  }
+  // Two files one after the other add up, grids and points alike.
+  const auto both = job::correct_gear(*c.gear, {{dir / "grid.csv", dir / "surface.dmo"}, {}});
+  ASSERT_TRUE(both);
+  double worst = 0;
+  for (const auto& p : grid)
+    worst = std::max(worst, std::abs(both->fit.rings[0]->side(p.side).at(p.theta, radius(p.p)).value -
+                                     2 * of_grid->fit.rings[0]->side(p.side).at(p.theta, radius(p.p)).value));
+  EXPECT_LT(worst, 2e-5);
+  EXPECT_EQ(both->fit.flanks.size(), 4u);
+  // Centres taken for the surface, and the other way round.
+  const auto centres = job::correct_gear(*c.gear, {{dir / "centres.txt"}, {}});
+  ASSERT_FALSE(centres);
+  EXPECT_NE(centres.error().text().find("are they the centres of a ball of that radius?"), std::string::npos)
+      << centres.error().text();
+  EXPECT_FALSE(job::correct_gear(*c.gear, {{dir / "surface.txt"}, 1.2}));
+  const auto ball = job::correct_gear(*c.gear, {{dir / "grid.csv"}, 1.0});
+  ASSERT_FALSE(ball);
+  EXPECT_NE(ball.error().text().find("an inspection grid holds deviations"), std::string::npos);
+}
+
+TEST(Correction, ARunAnswersPointsAndTellsPitchAndRunOut) {
+  const TestDir dir;
+  write_file(dir / "job.toml", file_text(kSamples + "/spur_quick.toml"));
+  const Case c = read_case(dir / "job.toml");
+  const auto grid = grid_of(*c.gear, 5, 9);
+  write_file(dir / "r.dmo", dmis_of(measured_teeth(*c.gear, grid, 60, 0)));
+  const auto run =
+      run_program({"correct", dir / "job.toml", "--measured", dir / "r.dmo", "--json", "--out", dir / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto report = nlohmann::json::parse(run.out)["report"];
+  ASSERT_EQ(report["pitch"].size(), 2u);
+  EXPECT_EQ(report["pitch"][0]["teeth"], 60);
+  EXPECT_EQ(report["run_out"].size(), 1u);
+  EXPECT_EQ(report["correction"][0]["teeth"], 60);
+  EXPECT_EQ(report["correction"][0]["file"], dir / "r.dmo");
+  const auto refused = run_program(
+      {"correct", dir / "job.toml", "--measured", dir / "r.dmo", "--ball-diameter", "0", "--out", dir / "out"});
+  EXPECT_EQ(refused.exit_code, 2);
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 
 #include "app/job/file.h"
 #include "app/job/measured_file.h"
+#include "app/job/measured_points.h"
+#include "app/job/measured_setup.h"
 #include "app/tool_library/tool_library.h"
 #include "geometry/mesh/file.h"
 #include "postproc/controls/of_machine.h"
@@ -118,6 +120,28 @@ ByteReader measured_reader() {
           }};
 }
 
+/// Results of measuring machines; every point is sought on the flanks of a gear.
+std::vector<ByteReader> measured_points_readers() {
+  static const face_gear::FaceGear gear = made(spur_parameters());
+  const auto grid = inspection::inspection_grid(gear, {5, 9});
+  std::string plain = "# x y z i j k\n", dmis = "UNITS/MM,ANGDEC\nFA(C)=FEAT/GSURF\nPTDATA/CART,1,2,3\n";
+  for (const auto& p : *grid) {
+    plain += fmt::format("{:.4f} {:.4f} {:.4f} {:.6f} {:.6f} {:.6f}\n", p.p.x(), p.p.y(), p.p.z(), p.n.x(), p.n.y(),
+                         p.n.z());
+    dmis += fmt::format("FA(P)=FEAT/POINT,CART,{:.4f},{:.4f},{:.4f},$\n{:.6f},{:.6f},{:.6f}\n", p.p.x(), p.p.y(),
+                        p.p.z(), p.n.x(), p.n.y(), p.n.z());
+  }
+  const auto read = [](std::string_view bytes) {
+    return fault_of(job::parse_measured_points(bytes, "measured.txt", gear, 0));
+  };
+  return {{"measured_plain", "0123456789.,;-+eE \t\n", {plain}, read},
+          {"measured_dmis", "0123456789.,-+$()=/FACRTPOLEU \n", {dmis}, read},
+          {"measured_setup",
+           kToml,
+           {"[measured]\norigin = [1, -2.5, 3e1] # mm\nclocking = 0.01\ntouches = 16\n"},
+           [](std::string_view bytes) { return fault_of(job::parse_measured_setup(bytes, "part.toml")); }}};
+}
+
 /// Files of tools of other programs: a library of FreeCAD names bits, which lie beside it undamaged.
 std::vector<ByteReader> tool_library_readers() {
   static const TestDir dir;
@@ -225,7 +249,8 @@ std::vector<ByteReader> gearbox_readers() {
 std::vector<ByteReader> all_readers() {
   std::vector<ByteReader> readers = {job_reader(), machine_reader(), shaper_machine_reader(), meridian_reader(),
                                      measured_reader()};
-  for (const auto& group : {tool_library_readers(), mesh_readers(), nc_readers(), gearbox_readers()})
+  for (const auto& group :
+       {measured_points_readers(), tool_library_readers(), mesh_readers(), nc_readers(), gearbox_readers()})
     readers.insert(readers.end(), group.begin(), group.end());
   return readers;
 }

@@ -123,7 +123,7 @@ class BevelProcess final : public process::GearProcess {
   }
 
   [[nodiscard]] const process::PartFacts& part() const override { return part_; }
-  [[nodiscard]] Result<process::Correction> correct(const std::vector<std::string>&, app::StageClock&) override {
+  [[nodiscard]] Result<process::Correction> correct(const job::MeasuredInput&, app::StageClock&) override {
     return process::needs_face_gear(job_);
   }
   [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine& machine) const override {

@@ -188,15 +188,17 @@ class FaceProcess final : public process::GearProcess {
   FaceProcess(const job::Job& job, face_gear::FaceGear gear) : job_(job), gear_(std::move(gear)) { note_part(); }
 
   [[nodiscard]] const process::PartFacts& part() const override { return part_; }
-  [[nodiscard]] Result<process::Correction> correct(const std::vector<std::string>& measured_files,
+  [[nodiscard]] Result<process::Correction> correct(const job::MeasuredInput& measured,
                                                     app::StageClock& clock) override {
-    auto corrected = clock.run("correction", [&] { return job::correct_gear(gear_, measured_files); });
+    auto corrected = clock.run("correction", [&] { return job::correct_gear(gear_, measured); });
     if (!corrected) return corrected.error();
+    process::Correction out;
+    for (const auto& f : corrected->fit.flanks) out.rows.push_back({f.zone, f.side, f.file, f.teeth, f.residual});
+    out.index = corrected->fit.index;
+    out.warnings = corrected->fit.warnings;
+    out.json = job::correction_json(*corrected);
     gear_ = std::move(corrected->gear);
     note_part();
-    process::Correction out;
-    for (const auto& f : corrected->fit.flanks) out.rows.push_back({f.zone, f.side, f.residual});
-    out.json = job::correction_json(corrected->fit, corrected->measurements);
     return out;
   }
   [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine&) const override {

@@ -28,6 +28,9 @@ void begin_report(Run& run) {
     report.warnings.push_back(std::move(*coarse));
   if (!run.gear.correction) return;
   report.correction = run.gear.correction->rows;
+  report.index = run.gear.correction->index;
+  report.warnings.insert(report.warnings.end(), run.gear.correction->warnings.begin(),
+                         run.gear.correction->warnings.end());
   double most = 0;
   for (const auto& row : report.correction) most = std::max(most, row.fit.measured_max_mm);
   report.warnings.push_back(
@@ -83,7 +86,8 @@ class Attempts {
         limits_(limits),
         output_(output),
         request_{run.job,
-                 run.job.name + (run.gear.correction ? ", corrected" : ""),
+                 run.job.name + (run.gear.correction ? ", corrected" : "") +
+                     (run.job.setup->measured_file.empty() ? "" : ", as measured"),
                  run.machine,
                  run.gear.process->part().teeth,
                  run.gear.process->link_body(run.machine),
@@ -184,13 +188,13 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
 
 }  // namespace
 
-process::ValueOrErrors<GearToCut> make_gear(const job::Job& job, const std::vector<std::string>& measured_files,
+process::ValueOrErrors<GearToCut> make_gear(const job::Job& job, const job::MeasuredInput& measured,
                                             app::StageClock& clock) {
   auto made = clock.run("gear", [&] { return make_process(job); });
   if (auto* errors = made.refused()) return std::move(*errors);
   GearToCut gear{std::move(made).value(), std::nullopt};
-  if (measured_files.empty()) return gear;
-  auto corrected = gear.process->correct(measured_files, clock);
+  if (measured.files.empty()) return gear;
+  auto corrected = gear.process->correct(measured, clock);
   if (!corrected) return std::vector{corrected.error()};
   gear.correction = std::move(corrected.value());
   return gear;
@@ -200,7 +204,7 @@ std::vector<Diagnostic> prepare(Run& run, const RunAsked& asked) {
   if (run.job.operations.empty())
     return {fail_at(run.job.where("operation"), "the job lacks an [[operation]]: there is nothing to run")};
   std::vector<Diagnostic> errors;
-  auto gear = make_gear(run.job, asked.measured_files, run.clock);
+  auto gear = make_gear(run.job, asked.measured, run.clock);
   if (auto* refused = gear.refused()) errors = std::move(*refused);
   else run.gear = std::move(gear).value();
   auto loaded = run.clock.run("machine", [&] {

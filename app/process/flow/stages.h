@@ -10,6 +10,7 @@
 #include "app/base/output_dir.h"
 #include "app/base/stage_clock.h"
 #include "app/job/job.h"
+#include "app/job/measured_file.h"
 #include "app/process/gear_process.h"
 #include "app/report/page/report_page.h"
 #include "app/report/run_report.h"
@@ -20,8 +21,8 @@ namespace toothpath::flow {
 
 /// What a run is asked beside its job.
 struct RunAsked {
-  std::string restart;                      ///< "OP:TOOTH", both from 0; empty: from the beginning
-  std::vector<std::string> measured_files;  ///< measured deviations that the flanks answer, in the order of the cuts
+  std::string restart;          ///< "OP:TOOTH", both from 0; empty: from the beginning
+  job::MeasuredInput measured;  ///< what the flanks answer
 };
 
 /// The gear of a job, with the flanks to aim at.
@@ -30,8 +31,7 @@ struct GearToCut {
   std::optional<process::Correction> correction;  ///< where the flanks answer measured files
 };
 /// Stages "gear" and "correction". Refused: what the gear and the files refuse, each with its place.
-[[nodiscard]] process::ValueOrErrors<GearToCut> make_gear(const job::Job& job,
-                                                          const std::vector<std::string>& measured_files,
+[[nodiscard]] process::ValueOrErrors<GearToCut> make_gear(const job::Job& job, const job::MeasuredInput& measured,
                                                           app::StageClock& clock);
 
 /// What one run has made so far. Stages fill it in order.

@@ -98,6 +98,24 @@ PageTable correction_table(const report::RunReport& r) {
   return table;
 }
 
+PageTable index_table(const report::RunReport& r) {
+  PageTable table{
+      "Pitch and run-out, measured",
+      {"zone", "flank", "radius mm", "measured", "f_p um", "F_p um", "F_r um"},
+      {},
+      "From where the middle of each flank stands; the correction above leaves them out. Where not all teeth "
+      "were measured, the true values may be larger."};
+  for (const auto& p : r.index.pitch)
+    table.rows.push_back({std::to_string(p.zone), fmt::format("{:+}", p.side), fmt::format("{:.3f}", p.radius_mm),
+                          fmt::format("{} teeth", p.teeth),
+                          p.pairs ? fmt::format("{:.2f}", p.single_mm * app::kUm) : std::string(),
+                          fmt::format("{:.2f}", p.total_mm * app::kUm), ""});
+  for (const auto& f : r.index.run_out)
+    table.rows.push_back({std::to_string(f.zone), "", fmt::format("{:.3f}", f.radius_mm),
+                          fmt::format("{} spaces", f.spaces), "", "", fmt::format("{:.2f}", f.run_out_mm * app::kUm)});
+  return table;
+}
+
 PageTable pass_table(const report::RunReport& r) {
   PageTable table{"Passes",
                   {"op", "zone", "pass", "name", "direction", "length mm", "points"},
@@ -147,6 +165,7 @@ ReportPage page_of_run(const GearOnPage& gear, const report::RunReport& r, std::
     if (!section.id.empty()) page.sections.push_back(section);
   if (!r.operations.empty()) page.tables = {operation_table(r), axis_table(r)};
   if (!r.correction.empty()) page.tables.push_back(correction_table(r));
+  if (!r.index.pitch.empty()) page.tables.push_back(index_table(r));
   if (!r.passes.empty()) page.tables.push_back(pass_table(r));
   return page;
 }

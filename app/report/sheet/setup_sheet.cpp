@@ -60,6 +60,9 @@ void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part,
   sheet.row({"gear origin, " + setup.work_offset, coordinates(setup.origin_mm - setup.work_offset_at_mm)});
   sheet.row({"gear axis", setup.axis_up ? "up: teeth towards the spindle, gear X along machine X"
                                         : "down: turned by 180 deg about X"});
+  if (!setup.measured_file.empty())
+    sheet.row({"part", fmt::format("stands as measured in {}: teeth turned by {:.4f} deg about gear Z",
+                                   setup.measured_file, degrees(setup.clocking_rad))});
   sheet.row({"coolant", coolant_text(job.coolant, machine)});
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k)
     if (const auto& axis = machine.chain.rotary(k); axis.clamp)

@@ -1,0 +1,57 @@
+// Heidenhain: touch probe cycle 4, measuring in 3-D along a vector; its results and the sign of a touch stand in four Q
+// parameters in a row. Ways between are plain blocks: the control watches the probe in them.
+#include <cmath>
+
+#include "postproc/probing/probing_text.h"
+
+namespace toothpath::probing {
+namespace {
+
+constexpr int kFirstResult = 1600;  ///< Q parameters that are free for programs; four a touch
+
+}  // namespace
+
+std::string heidenhain_probing(const ProbeProgram& program) {
+  std::string out = "BEGIN PGM PROBE_SETUP MM\n";
+  const auto add = [&](const std::string& line) { out += line + "\n"; };
+  for (const auto& line : header(program)) add("; " + line);
+  add("; RESULTS OF TOUCH N: Q1600 + 4 (N - 1) AND THE TWO BEHIND IT, TO BE TYPED AS N X Y Z");
+  for (const char* line : {"PLANE RESET STAY", "FUNCTION RESET TCPM", "TRANS DATUM RESET"}) add(line);
+  add(program.work_offset);
+  const std::string top = "L " + word('Z', program.top_mm, true) + " R0 FMAX M91";
+  add(top);
+  add(fmt::format("TOOL CALL {} Z", program.tool));
+  add(top);
+  std::string rotaries;
+  for (const auto& [letter, degrees] : program.rotaries) rotaries += " " + word(letter, degrees, true);
+  if (!rotaries.empty()) add("L" + rotaries + " R0 FMAX");
+  bool first = true;
+  for (const ProbeTouch& touch : program.touches) {
+    const std::string feed = fmt::format(" R0 F{:.0f}", program.guarded_feed);
+    const int result = kFirstResult + 4 * (touch.number - 1);
+    const Vec3 way = touch.past - touch.start;
+    add(fmt::format("; TOUCH {} {}", touch.number, touch.remark));
+    add("L " + words(touch.start, 2, true) + (first ? " R0 FMAX" : feed));
+    if (first) add("L " + word('Z', program.clear_mm, true) + feed);
+    first = false;
+    add("L " + word('Z', touch.start.z(), true) + feed);
+    add("TCH PROBE 4.0 MEASURING IN 3-D");
+    add(fmt::format("TCH PROBE 4.1 Q{}", result));
+    add(fmt::format("TCH PROBE 4.2 I{} I{} I{}", word('X', way.x(), true), word('Y', way.y(), true),
+                    word('Z', way.z(), true)));
+    add(fmt::format("TCH PROBE 4.3 DIST {:+.4f} F{:.0f} MB{:.4f} REFERENCE SYSTEM:0", way.norm(), program.feed, 0.0));
+    add(fmt::format("FN 9: IF +Q{} EQU -1 GOTO LBL 99", result + 3));
+    add("L " + words(touch.start, 3, true) + feed);
+    add("L " + word('Z', program.clear_mm, true) + feed);
+  }
+  add(top);
+  add("STOP M30");
+  add("LBL 99");
+  add("; THE PROBE MET NOTHING");
+  add("STOP");
+  add("LBL 0");
+  add("END PGM PROBE_SETUP MM");
+  return out;
+}
+
+}  // namespace toothpath::probing

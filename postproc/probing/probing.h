@@ -1,0 +1,41 @@
+// A program that touches places of a part one after the other and logs where the ball's centre stood.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "geometry/base/result.h"
+#include "geometry/base/vec.h"
+
+namespace toothpath::probing {
+
+/// One touch; places of the ball's centre in the work offset, mm, all rotaries standing.
+struct ProbeTouch {
+  int number = 0;
+  std::string remark;         ///< ASCII, upper case
+  Vec3 start = Vec3::Zero();  ///< straight below the clear height; the ball goes from here
+  Vec3 past = Vec3::Zero();   ///< to the touch, or to here where nothing is met: then the program stops
+};
+
+struct ProbeProgram {
+  std::string job_name, machine_name;
+  std::string work_offset;  ///< the line of the control that selects it
+  int tool = 0;
+  int number = 0;                                    ///< of the program, where the control wants one
+  double ball_diameter_mm = 0, probe_length_mm = 0;  ///< gauge line to the centre of the ball
+  double feed = 0;                                   ///< of a touch, mm/min
+  double guarded_feed = 0;                           ///< of the ways between, mm/min
+  double top_mm = 0;                                 ///< machine Z at which the probe comes and goes
+  double clear_mm = 0;                               ///< Z of the ball's centre above everything, work offset
+  std::vector<std::pair<char, double>> rotaries;     ///< letter and degrees
+  std::vector<ProbeTouch> touches;
+};
+
+/// The program as text of a control: ways to and from a touch stop where the probe meets something, a touch that meets
+/// nothing ends it, and every touch logs "number x y z".
+/// Errors: a control without such words.
+[[nodiscard]] Result<std::string> probing_text(const ProbeProgram& program, std::string_view dialect);
+
+}  // namespace toothpath::probing

@@ -1,0 +1,152 @@
+// Hard finishing from outside: a probing program, its touches on a gear that stands elsewhere, and a job that is cut
+// where the gear stands.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+
+#include "app/job/file.h"
+#include "app/process/gear_of_job.h"
+#include "geometry/base/angle.h"
+#include "geometry/face_gear/inverse.h"
+#include "tests/app/program.h"
+#include "tests/support/touching_ball.h"
+
+namespace toothpath::test {
+namespace {
+
+struct ProbedTouch {
+  int number = 0, tooth = 0, side = 1;
+  Vec3 start = Vec3::Zero(), past = Vec3::Zero();
+};
+
+/// Touches as they stand in the text of LinuxCNC.
+std::vector<ProbedTouch> touches_of(const std::string& text) {
+  std::vector<ProbedTouch> out;
+  std::istringstream in(text);
+  std::smatch m;
+  for (std::string line; std::getline(in, line);) {
+    if (std::regex_match(line, m, std::regex(R"(\(TOUCH (\d+) ZONE 0 TOOTH (\d+) FLANK ([+-]1)\))"))) {
+      out.emplace_back();
+      out.back().number = std::stoi(m[1]);
+      out.back().tooth = std::stoi(m[2]);
+      out.back().side = std::stoi(m[3]);
+    } else if (std::regex_match(line, m, std::regex(R"(o7001 call \[(\S+)\] \[(\S+)\] \[(\S+)\] \[\S+\])"))) {
+      out.back().start = {std::stod(m[1]), std::stod(m[2]), std::stod(m[3])};
+    } else if (std::regex_match(line, m, std::regex(R"(G38\.2 X(\S+) Y(\S+) Z(\S+) F\S+)"))) {
+      out.back().past = {std::stod(m[1]), std::stod(m[2]), std::stod(m[3])};
+    }
+  }
+  return out;
+}
+
+TEST(ProbeCommand, AGearThatStandsElsewhereIsCutWhereItStands) {
+  const TestDir dir;
+  const std::string job_text = file_text(kSamples + "/spur_quick.toml");
+  write_file(dir / "job.toml", job_text);
+  const auto probe = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {
+        "probe", dir / "job.toml", "--ball-diameter", "1", "--probe-length", "90", "--tool",
+        "9",     "--out",          dir / "probe"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program({words});
+  };
+  const auto written = probe({});
+  ASSERT_EQ(written.exit_code, 0) << written.err;
+  const std::string text = file_text(dir / "probe/probe_setup.ngc");
+  const auto touches = touches_of(text);
+  ASSERT_EQ(touches.size(), 16u);
+
+  // It is no program that cuts: the reader says where it stops to understand it.
+  const auto checked = run_program({"check", dir / "job.toml", dir / "probe/probe_setup.ngc", "--out", dir / "check"});
+  EXPECT_NE(checked.exit_code, 0);
+  EXPECT_NE(checked.err.find("probe_setup.ngc:"), std::string::npos) << checked.err;
+
+  // The gear on the machine: moved and turned.
+  auto job = job::read_job_file(dir / "job.toml");
+  ASSERT_TRUE(job.has_value());
+  const auto gear = process::make_face_gear(job.value()).value();
+  const auto& f = gear.rings()[0].surface;
+  const joints::Setup setup = *job.value().setup;
+  const Vec3 moved(0.12, -0.08, 0.05);
+  const double turn = 0.0011;
+  const Stands stands{Mat3(Eigen::AngleAxisd(turn, Vec3::UnitZ())), moved};
+  const auto in_gear = [&](const Vec3& w) -> Vec3 { return w + setup.work_offset_at_mm - setup.origin_mm; };
+  std::string results = "# number x y z\n";
+  for (const auto& t : touches) {
+    const Vec3 from = in_gear(t.start), to = in_gear(t.past);
+    const auto foot = face_gear::flank_distance(f, t.side, turned(0.5 * (from + to), -t.tooth * gear.pitch()));
+    ASSERT_TRUE(foot);
+    const auto centre = touching_centre(f, t.side, t.tooth, 0.5, stands, from, to, foot->foot.theta, foot->foot.B);
+    ASSERT_TRUE(centre) << t.number;
+    const Vec3 w = *centre - setup.work_offset_at_mm + setup.origin_mm;
+    results += fmt::format("{} {:.6f} {:.6f} {:.6f}\n", t.number, w.x(), w.y(), w.z());
+  }
+  write_file(dir / "results.txt", results);
+  const auto solved = probe({"--results", dir / "results.txt", "--json"});
+  ASSERT_EQ(solved.exit_code, 0) << solved.err;
+  const auto found = nlohmann::json::parse(solved.out)["report"];
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(found["moved"][k].get<double>(), moved[Eigen::Index(k)], 5e-6) << solved.out;
+  EXPECT_NEAR(found["clocking_deg"].get<double>(), degrees(turn), 1e-5);
+  EXPECT_LT(found["residual_um"].get<double>(), 0.01);
+
+  // The job with the file: its program is proven where the gear stands, and is a gouge where it was meant to stand.
+  write_file(dir / "part.measured.toml", file_text(dir / "probe/part.measured.toml"));
+  write_file(dir / "hard.toml", replaced(job_text, "[setup]\n", "[setup]\nmeasured = \"part.measured.toml\"\n"));
+  const auto run = run_program({"run", dir / "hard.toml", "--out", dir / "hard"});
+  ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+  EXPECT_NE(run.out.find("the part stands as measured in part.measured.toml"), std::string::npos) << run.out;
+  EXPECT_NE(file_text(dir / "hard/program.ngc").find("AS MEASURED"), std::string::npos);
+  EXPECT_NE(file_text(dir / "hard/setup.html").find("stands as measured in part.measured.toml"), std::string::npos);
+  EXPECT_EQ(run_program({"check", dir / "hard.toml", dir / "hard/program.ngc", "--out", dir / "again"}).exit_code, 0);
+  EXPECT_EQ(run_program({"check", dir / "job.toml", dir / "hard/program.ngc", "--out", dir / "nominal"}).exit_code, 1);
+}
+
+TEST(ProbeCommand, WhatIsWrongIsRefusedAtItsPlace) {
+  const TestDir dir;
+  const std::string job_text = file_text(kSamples + "/spur_quick.toml");
+  write_file(dir / "job.toml", job_text);
+  const auto run = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {"probe", dir / "job.toml", "--out", dir / "out"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program({words});
+  };
+  EXPECT_EQ(run({}).exit_code, 2);
+  EXPECT_EQ(run({"--ball-diameter", "1", "--tool", "9"}).err, "error: probe needs --probe-length\n");
+  const auto large = run({"--ball-diameter", "5", "--probe-length", "90", "--tool", "9"});
+  EXPECT_EQ(large.exit_code, 3);
+  EXPECT_NE(large.err.find("the largest that does is"), std::string::npos) << large.err;
+  const auto far = run({"--ball-diameter", "1", "--probe-length", "900", "--tool", "9"});
+  EXPECT_EQ(far.exit_code, 3);
+  EXPECT_NE(far.err.find("of the gauge point exceeds"), std::string::npos) << far.err;
+  write_file(dir / "r.txt", "1 2 3\n");
+  const auto short_line = run({"--ball-diameter", "1", "--results", dir / "r.txt"});
+  EXPECT_EQ(short_line.exit_code, 3);
+  EXPECT_EQ(short_line.err, (dir / "r.txt") + ":1:1: error: 3 columns, must be 4: number x y z\n");
+
+  const auto with = [&](const std::string& measured) {
+    write_file(dir / "m.toml", measured);
+    write_file(dir / "hard.toml", replaced(job_text, "[setup]\n", "[setup]\nmeasured = \"m.toml\"\n"));
+    return run_program({"surface", dir / "hard.toml", "--out", dir / "surface"}).err;
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  has(with("[measured]\n"), "measured = \"m.toml\", line 1, column ");
+  has(with("[measured]\norigin = [1, 2]\n"), "measured = \"m.toml\", line 2, column ");
+  has(with("[measured]\norigin = [500, 0, 0]\n"), "mm from that of the job, at most 5 mm: another set-up or unit");
+  const auto job = job::read_job_file(dir / "job.toml");
+  ASSERT_TRUE(job.has_value());
+  const Vec3 o = job.value().setup->origin_mm;
+  has(with(fmt::format("[measured]\norigin = [{}, {}, {}]\nclocking = 3.1\n", o.x(), o.y(), o.z())),
+      "clocking = 3.1 deg exceeds 3 deg, half a pitch of 60 teeth");
+  has(with(fmt::format("[measured]\norigin = [{}, {}, {}]\nturn = 3.1\n", o.x(), o.y(), o.z())),
+      "unknown key \"turn\"");
+  const auto blank = run({"--ball-diameter", "4", "--probe-length", "90", "--tool", "9", "--blank"});
+  EXPECT_EQ(blank.exit_code, 0) << blank.err;
+  EXPECT_NE(file_text(dir / "out/probe_setup.ngc").find("(TOUCH 8 RIM OF THE BLANK)"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace toothpath::test

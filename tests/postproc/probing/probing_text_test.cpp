@@ -1,0 +1,175 @@
+// The probing program of every control, walked by a reader of this test: where the ball goes, how, and what it logs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <regex>
+#include <sstream>
+
+#include "postproc/probing/probing.h"
+#include "tests/support/rs274.h"
+
+namespace toothpath::test {
+namespace {
+
+using probing::ProbeProgram;
+
+ProbeProgram sample() {
+  ProbeProgram p;
+  p.job_name = "ring";
+  p.machine_name = "trial";
+  p.work_offset = "G54";
+  p.tool = 1;
+  p.number = 7992;
+  p.ball_diameter_mm = 2;
+  p.probe_length_mm = 100;
+  p.feed = 50;
+  p.guarded_feed = 1000;
+  p.top_mm = 399.9;
+  p.clear_mm = 12.5;
+  p.rotaries = {{'A', 0}, {'C', 0}};
+  p.touches = {{1, "ZONE 0 TOOTH 0 FLANK +1", {62, -1.25, -2.5}, {61.8, -3.1234, -3.25}},
+               {2, "ZONE 0 TOOTH 1 FLANK -1", {62, 1, -2.5}, {62.25, 2.875, -3.5}},
+               {3, "ZONE 0 TOOTH 15 FLANK +1", {-0.00001, 62, -2.5}, {-1.5, 62.5, -3}}};
+  return p;
+}
+
+/// A walk: places of the ball and what leads there.
+struct Step {
+  char kind;  ///< 'r' rapid, 'g' guarded, 't' touch, 'b' feed away
+  Vec3 to;
+  double feed;
+};
+
+struct Walk {
+  std::vector<Step> steps;
+  std::vector<int> logged;  ///< numbers, in order
+};
+
+std::optional<double> value_of(const std::string& line, const std::string& letter) {
+  std::smatch m;
+  if (!std::regex_search(line, m, std::regex("(?:^|[ A-Z=])" + letter + "=?([+-]?[0-9]+\\.[0-9]+)"))) return {};
+  return std::stod(m[1]);
+}
+
+Vec3 moved(Vec3 at, const std::string& line) {
+  for (int k = 0; k < 3; ++k)
+    if (const auto v = value_of(line, std::string(1, "XYZ"[k]))) at[k] = *v;
+  return at;
+}
+
+Walk walk_of(const std::string& text) {
+  Walk out;
+  Vec3 at(NAN, NAN, NAN), incremental = Vec3::Zero();
+  double feed = 0;
+  std::istringstream in(text);
+  std::smatch m;
+  for (std::string line; std::getline(in, line);) {
+    if (line.find("G53") != std::string::npos || line.find("SUPA") != std::string::npos ||
+        line.find("M91") != std::string::npos || (line[0] == '(' && line.rfind("(LOG,", 0) != 0) || line[0] == ';')
+      continue;
+    if (const auto f = value_of(line, "F")) feed = *f;
+    else if (std::regex_search(line, m, std::regex(" F([0-9]+)(?: |$)"))) feed = std::stod(m[1]);
+    if (std::regex_match(line, m, std::regex(R"(o7001 call \[(\S+)\] \[(\S+)\] \[(\S+)\] \[(\S+)\])"))) {
+      at = {std::stod(m[1]), std::stod(m[2]), std::stod(m[3])};
+      out.steps.push_back({'g', at, std::stod(m[4])});
+    } else if (line.rfind("G38.2 ", 0) == 0 || line.rfind("G31 ", 0) == 0) {
+      out.steps.push_back({'t', moved(at, line), feed});
+    } else if (line.rfind("G65 P9810 ", 0) == 0 || (line.rfind("MEAS=1", 0) == 0)) {
+      const bool touches =
+          line.rfind("MEAS=1", 0) == 0 && line.find("X=") != std::string::npos && line.find("Z=") != std::string::npos;
+      const Vec3 to = moved(at, line);
+      out.steps.push_back({touches ? 't' : 'g', to, feed});
+      if (!touches) at = to;
+    } else if (line.rfind("TCH PROBE 4.2 ", 0) == 0) {
+      for (int k = 0; k < 3; ++k) incremental[k] = *value_of(line, std::string("I") + "XYZ"[k]);
+    } else if (line.rfind("TCH PROBE 4.3 ", 0) == 0) {
+      EXPECT_NEAR(*value_of(line, "DIST "), incremental.norm(), 2e-4);
+      out.steps.push_back({'t', at + incremental, feed});
+    } else if (std::regex_search(line, m, std::regex("^(G0|G1|L|G43 H[0-9]+) ")) && !value_of(line, "A")) {
+      const bool rapid = m[1] == "G0" || m[1].str().rfind("G43", 0) == 0 || line.find("FMAX") != std::string::npos;
+      if (!std::isnan(moved(at, line).x())) {
+        at = moved(at, line);
+        out.steps.push_back({rapid ? 'r' : 'b', at, feed});
+      }
+    } else if (std::regex_search(
+                   line, m, std::regex(R"(^\(LOG,([0-9]+) #5061 #5062 #5063\)$|^#100=([0-9]+)$|"([0-9]+) "<<R1)"))) {
+      for (std::size_t k = 1; k < m.size(); ++k)
+        if (m[k].matched) out.logged.push_back(std::stoi(m[k]));
+    } else if (std::regex_match(line, m, std::regex("TCH PROBE 4.1 Q([0-9]+)"))) {
+      out.logged.push_back((std::stoi(m[1]) - 1600) / 4 + 1);
+    }
+  }
+  return out;
+}
+
+TEST(ProbingText, EveryControlGoesDownTouchesGoesBackAndUp) {
+  const ProbeProgram p = sample();
+  for (const char* dialect : {"linuxcnc", "fanuc", "mitsubishi_m80", "haas", "siemens", "heidenhain"}) {
+    const auto text = probing::probing_text(p, dialect);
+    ASSERT_TRUE(text) << dialect;
+    std::istringstream in(*text);
+    for (std::string line; std::getline(in, line);) {
+      EXPECT_LE(line.size(), 120u) << line;
+      EXPECT_EQ(line.find("-0.0000"), std::string::npos) << line;
+      for (const char c : line) EXPECT_TRUE(c >= ' ' && c <= '~') << line;
+    }
+    const Walk walk = walk_of(*text);
+    EXPECT_EQ(walk.logged, (std::vector<int>{1, 2, 3})) << dialect << "\n" << *text;
+    std::size_t next = 0;
+    double height = INFINITY;
+    Vec3 at(NAN, NAN, NAN);
+    for (std::size_t k = 0; k < walk.steps.size(); ++k) {
+      const Step& s = walk.steps[k];
+      if (s.kind == 't') {
+        ASSERT_LT(next, p.touches.size()) << dialect;
+        EXPECT_LT((at - p.touches[next].start).norm(), 2e-4) << dialect << " " << at.transpose();
+        EXPECT_LT((s.to - p.touches[next].past).norm(), 2e-4) << dialect << " " << s.to.transpose();
+        EXPECT_EQ(s.feed, p.feed) << dialect;
+        // Back to where it came from, then straight up, before anything else.
+        ASSERT_LT(k + 2, walk.steps.size());
+        EXPECT_EQ(walk.steps[k + 1].kind, 'b') << dialect;
+        EXPECT_LT((walk.steps[k + 1].to - p.touches[next].start).norm(), 2e-4) << dialect;
+        EXPECT_NEAR(walk.steps[k + 2].to.z(), p.clear_mm, 1e-4) << dialect;
+        EXPECT_LT((walk.steps[k + 2].to - walk.steps[k + 1].to).head<2>().norm(), 1e-9) << dialect;
+        ++next;
+        continue;
+      }
+      // Below the clear height nothing moves across but by a touch and back from it.
+      if (!std::isnan(at.x()) && std::min(at.z(), s.to.z()) < p.clear_mm - 1e-6 && walk.steps[k - 1].kind != 't') {
+        EXPECT_LT((s.to - at).head<2>().norm(), 1e-9) << dialect << " step " << k;
+      }
+      if (s.to.z() < p.clear_mm - 1e-6) { EXPECT_NE(s.kind, 'r') << dialect << " step " << k; }
+      at = s.to;
+      height = std::min(height, s.to.z());
+    }
+    EXPECT_EQ(next, p.touches.size()) << dialect;
+    EXPECT_NEAR(height, -2.5, 1e-9) << dialect;
+  }
+  const auto none = probing::probing_text(p, "apt");
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("dialect = \"apt\" has no words for a probe"), std::string::npos);
+}
+
+TEST(ProbingTextLinuxcnc, TheInterpreterProbesThePlannedPlaces) {
+  const auto text = probing::probing_text(sample(), "linuxcnc");
+  ASSERT_TRUE(text);
+  const Canonical seen = interpret(*text, "probing");
+  // Nothing trips in the stand-alone interpreter: a touch ends where its way ends, and that is what is logged.
+  std::vector<std::string> probes;
+  for (const auto& line : seen.lines)
+    if (line.find("STRAIGHT_PROBE") != std::string::npos) probes.push_back(line);
+  // Two ways and one touch for each.
+  ASSERT_EQ(probes.size(), 9u) << seen.exit << seen.messages;
+  EXPECT_NE(probes[2].find("61.8000, -3.1234, -3.2500"), std::string::npos) << probes[2];
+  EXPECT_NE(probes[8].find("-1.5000, 62.5000, -3.0000"), std::string::npos) << probes[8];
+  std::vector<std::string> logged;
+  for (const auto& line : seen.lines)
+    if (line.find("LOG(\"") != std::string::npos) logged.push_back(line.substr(line.find("LOG(\"")));
+  ASSERT_EQ(logged.size(), 3u);
+  EXPECT_EQ(logged[0], "LOG(\"1 61.800000 -3.123400 -3.250000\")");
+  EXPECT_NE(probes[0].find("62.0000, -1.2500, 12.5000"), std::string::npos) << probes[0];
+  EXPECT_EQ(seen.messages.find("rror"), std::string::npos) << seen.messages;
+}
+
+}  // namespace
+}  // namespace toothpath::test
