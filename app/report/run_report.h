@@ -14,7 +14,7 @@
 #include "app/report/scene_report.h"
 #include "app/report/section.h"
 #include "cam/proof/verification.h"
-#include "geometry/face_gear/flank_correction.h"
+#include "geometry/face_gear/flank_field.h"
 #include "postproc/bodies/moves.h"
 #include "postproc/joints/program.h"
 #include "postproc/readback/conditions.h"
@@ -39,6 +39,17 @@ struct OperationReport {
 struct CorrectionRow {
   int zone = 0, side = 1;
   face_gear::CorrectionResidual fit;
+};
+
+/// Flanks whose drawing takes something off the plain ones: what, and what it comes to.
+struct ModifiedFlanks {
+  struct Zone {
+    int zone = 0;
+    face_gear::ModifiedForm form;
+  };
+  std::vector<modification::Modification> list;
+  std::vector<Zone> zones;  ///< those that are modified
+  [[nodiscard]] double most_removed_mm() const;
 };
 
 /// How wrong the length of a tool may be before a proven program leaves its limits (docs/setup_sheet.md).
@@ -133,6 +144,7 @@ struct RunReport {
   std::string force_basis;          ///< of the forces of the operations: coefficients and where they are from
   std::vector<SceneVerdict> scene;  ///< fixture and stock, where meshes of them were given
   std::optional<bodies::MovesFound> machine_moves;  ///< none where no program was proven
+  std::optional<ModifiedFlanks> modified;           ///< none where the flanks are plain
   std::vector<CorrectionRow> correction;            ///< empty: the nominal flanks are the target
   std::optional<CadReport> cad;                     ///< none where no solid was asked for
   std::optional<RoughedReport> roughed;             ///< none where it was not asked for, and where nothing roughs

@@ -233,7 +233,8 @@ void Inspection::modify(std::size_t k, const FaceGearParameters& gear, FaceGearR
   }
   r.modification = *made;
   if (!r.modification) return;
-  const ModifiedForm form = modified_form(gear, r);
+  r.form = std::make_shared<const ModifiedForm>(modified_form(gear, r));
+  const ModifiedForm& form = *r.form;
   if (!(form.turned_rad.value <= kMostTurned))
     refuse("modification",
            "zone {}: the modifications turn the normal of flank {:+d} by {:.4f} rad at radius {:.4f} mm, height {:.4f} "
@@ -322,8 +323,8 @@ Expected<FaceGear, std::vector<FaceGearRefusal>> FaceGear::make(const FaceGearPa
         make_surface<double>(parameters, parameters.zones.front().helix_angle_rad).L_p;
   for (const auto& zone : gear.parameters_.zones) {
     const auto surface = make_surface<double>(gear.parameters_, zone.helix_angle_rad);
-    gear.rings_.push_back(
-        {zone, surface, zone_limits(surface, parameters.module_mm, parameters.least_land_mm), nullptr, nullptr});
+    gear.rings_.push_back({zone, surface, zone_limits(surface, parameters.module_mm, parameters.least_land_mm), nullptr,
+                           nullptr, nullptr});
     inspection.ring(gear.rings_.size() - 1, gear.rings_.back(), gear.warnings_);
     if (inspection.refusals.empty()) inspection.swept_flank(gear.rings_.size() - 1, gear.rings_.back());
   }

@@ -13,6 +13,7 @@ namespace toothpath::face_gear {
 
 struct RingCorrection;
 struct RingModification;
+struct ModifiedForm;
 class SpaceSheet;
 
 /// One ring with everything precomputed.
@@ -21,6 +22,7 @@ struct FaceGearRing {
   FaceGearSurface<double> surface;
   ZoneLimits limits;
   std::shared_ptr<const RingModification> modification = nullptr;  ///< of the nominal flanks; none: plain
+  std::shared_ptr<const ModifiedForm> form = nullptr;              ///< what it comes to; with a modification
   std::shared_ptr<const RingCorrection> correction =
       nullptr;  ///< flanks to aim at instead of the nominal ones; none: the nominal
   /// Are the flanks to aim at other than the plain ones?

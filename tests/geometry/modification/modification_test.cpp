@@ -11,6 +11,7 @@
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/limits.h"
 #include "geometry/face_gear/space_sheet.h"
+#include "tests/support/modified_flank.h"
 #include "tests/support/sample_gears.h"
 
 namespace toothpath::test {
@@ -170,38 +171,6 @@ void on_flanks(const face_gear::FaceGear& gear, Visit visit) {
     }
 }
 
-/// The laws once more, straight from their words, in 50 digits.
-F50 law(const Modification& m, const F50& y, const F50& x, double depth, double from, double to) {
-  const F50 C(m.amount_mm), L(m.length_mm), size = C < 0 ? F50(-C) : C;
-  const auto relief = [&](const F50& t) -> F50 {  // t from the relieved end
-    if (m.law == Law::parabolic) {
-      if (t > L) return F50(0);
-      return t < 0 ? F50(C * (1 - 2 * t / L)) : F50(C * (L - t) * (L - t) / (L * L));
-    }
-    const F50 w(m.transition());
-    if (t <= L - w / 2) return C * (L - t) / L;
-    return t >= L + w / 2 ? F50(0) : F50(C * (L + w / 2 - t) * (L + w / 2 - t) / (2 * w * L));
-  };
-  const auto crown = [&](const F50& t, const F50& span) -> F50 {  // the tangent beyond the ends
-    F50 u = 2 * t / span - 1, s = u < 0 ? F50(-u) : u;
-    const F50 square = s > 1 ? F50(2 * s - 1) : F50(s * s);
-    return C < 0 ? F50(size * (1 - square)) : F50(C * square);
-  };
-  const F50 H(depth), a(from), b(to), face = b - a;
-  switch (m.kind) {
-    case Kind::tip_relief: return relief(y);
-    case Kind::root_relief: return relief(H - y);
-    case Kind::end_relief: return relief(x - a) + relief(b - x);
-    case Kind::profile_crowning: return crown(y, H);
-    case Kind::lead_crowning: return crown(x - a, face);
-    case Kind::pressure_angle_slope: return C > 0 ? F50(C * (1 - y / H)) : F50(size * y / H);
-    case Kind::helix_angle_slope: return C > 0 ? F50(C * (x - a) / face) : F50(size * (b - x) / face);
-    case Kind::twist: return size / 2 + C / 2 * (1 - 2 * y / H) * (2 * (x - a) / face - 1);
-    case Kind::grid: break;
-  }
-  return F50(0);
-}
-
 /// Point, normal and curvatures of the flank as the drawing says it, without the program's fields.
 TEST(ModifiedFlank, ValueNormalAndCurvatureMatchFiftyDigits) {
   for (const auto& parameters : gears()) {
@@ -209,16 +178,10 @@ TEST(ModifiedFlank, ValueNormalAndCurvatureMatchFiftyDigits) {
     p.modifications.pop_back();  // the grid has a test of its own
     const auto gear = made(p);
     const auto f = face_gear::make_surface<F50>(gear.parameters(), p.zones[0].helix_angle_rad);
-    const double depth = 2 * p.addendum_coefficient * p.module_mm;
     double point = 0, normal = 0, bend = 0;
     on_flanks(gear, [&](const face_gear::SpaceSheet& sheet, int side, double theta, double B) {
       const auto exact = [&](const F50& t, const F50& b) {
-        const auto q = f.flank(side, t, b);
-        const F50 r = sqrt(F50(q.p[0] * q.p[0] + q.p[1] * q.p[1])), y = (f.z_tip(r) - q.p[2]) * f.Sg;
-        F50 c(0);
-        for (const auto& m : p.modifications)
-          if (m.meets(side, 0)) c -= law(m, y, r, depth, p.zones[0].inner_radius_mm, p.zones[0].outer_radius_mm);
-        return Vec3T<F50>(q.p + q.n * c);
+        return modified_by_the_words<F50>(f, gear.parameters(), 0, side, t, b);
       };
       const F50 h("1e-12"), t(theta), b(B);
       const Vec3T<F50> x = exact(t, b), u0 = exact(t - h, b), u1 = exact(t + h, b), v0 = exact(t, b - h),
