@@ -191,8 +191,9 @@ length = 0.8
   std::vector<nlohmann::json> found;
   for (const std::string& text : {fine_job(""), fine_job(crowned + relieved)}) {
     write_file(dir / "job.toml", text);
-    ASSERT_EQ(run_program({"contact", dir / "job.toml", "--torque", "5", "--positions", "4", "--out", dir / "out"}).exit_code,
-              0);
+    ASSERT_EQ(
+        run_program({"contact", dir / "job.toml", "--torque", "5", "--positions", "4", "--out", dir / "out"}).exit_code,
+        0);
     found.push_back(nlohmann::json::parse(file_text(dir / "out/contact.json")));
   }
   for (std::size_t side = 0; side < 2; ++side) {

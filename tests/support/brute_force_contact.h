@@ -1,5 +1,5 @@
-// When do a pinion and a face gear touch? Two dense clouds of flank points, modified by the words where they are, turned until the first pair meets. No
-// normals, no parallel-surface theorem, no closed-form turn of the pinion.
+// When do a pinion and a face gear touch? Two dense clouds of flank points, modified by the words where they are,
+// turned until the first pair meets. No normals, no parallel-surface theorem, no closed-form turn of the pinion.
 #pragma once
 
 #include <vector>

@@ -233,9 +233,8 @@ TEST(Roll, ModifiedContactAgreesWithPointClouds) {
   using modification::Kind;
   p.modifications = {of(Kind::tip_relief, 0.02, 2), of(Kind::lead_crowning, 0.015), of(Kind::twist, 0.01),
                      of(Kind::pressure_angle_slope, -0.006)};
-  const std::vector<modification::Modification> on_pinion = {of(Kind::tip_relief, 0.012, 1.5),
-                                                             of(Kind::profile_crowning, 0.008),
-                                                             of(Kind::helix_angle_slope, 0.01)};
+  const std::vector<modification::Modification> on_pinion = {
+      of(Kind::tip_relief, 0.012, 1.5), of(Kind::profile_crowning, 0.008), of(Kind::helix_angle_slope, 0.01)};
   auto made = face_gear::FaceGear::make(p);
   ASSERT_TRUE(made.value_if());
   const face_gear::FaceGear& gear = *made.value_if();
