@@ -108,6 +108,7 @@ Status prove(Check& check) {
   check.states = states.finish(check.proof->read);
   report::RunReport& report = check.report;
   report = process::report_of("check", check.job, check.machine, check.gear.process->part().warnings);
+  report.modified = check.gear.process->part().modified;
   if (auto judged = judge_scene(check); !judged) return judged;
   process::note_proof(report, *check.proof);
   const auto& hash = report.hash;

@@ -37,6 +37,7 @@ CommandOutcome run_surface(const SurfaceRequest& request) {
   if (auto* errors = made.refused()) return failed(std::move(*errors));
   const process::GearProcess& gear = *made.value().process;
   report::RunReport report = process::surface_report(job, gear.part().warnings);
+  report.modified = gear.part().modified;
   if (const auto written = gear.write_files(*output, {}, {}, clock, report.files); !written)
     return failed(process::located(job, "gear", written.error()));
   auto cad = cad::write_files(request.cad, job, gear, {}, *output, clock, report.files);

@@ -40,7 +40,7 @@ void read_job(toml::TableReader& root, Job& job) {
   if (auto table = root.table("machine")) job.machine = read_machine_choice(*table);
   if (auto table = root.table("setup")) job.setup = read_setup(*table, job);
   if (auto table = root.table("shaping")) job.shaping = read_shaping(*table);
-  if (auto table = root.table("contact")) job.contact = read_contact(*table);
+  if (auto table = root.table("contact")) job.contact = read_contact(*table, job);
   if (auto table = root.table("coolant")) job.coolant = read_coolant(*table);
   if (auto table = root.table("material")) job.material = read_material(*table);
   if (auto table = root.table("verify")) job.verify = read_verify(*table, job.bevel_gear() != nullptr);

@@ -1,6 +1,7 @@
 // [gear], [[gear.zone]] and [stock]. What the geometry itself limits (undercut, pointing) is refused by geometry; here
 // stand the bounds of what a number of this kind can mean at all.
 #include <cmath>
+#include <filesystem>
 #include <iterator>
 #include <variant>
 
@@ -67,7 +68,7 @@ void read_zones(toml::TableReader& gear, face_gear::FaceGearParameters& result, 
 
 /// With its [[gear.zone]] tables, and [stock] where there is one.
 face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::TableReader* stock,
-                                             std::vector<std::string>& warnings) {
+                                             const std::string& directory, std::vector<std::string>& warnings) {
   face_gear::FaceGearParameters p;
   p.teeth = gear.integer("teeth", kTeeth).value_or(0);
   p.shaper_teeth = gear.integer("shaper_teeth", {3, 1000}).value_or(0);
@@ -94,6 +95,7 @@ face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::Tabl
   if (module && land >= *module)
     gear.refuse("least_land", "least_land = {} mm is not below module = {} mm", land, *module);
   read_zones(gear, p, warnings);
+  p.modifications = read_modifications(gear, directory);
   if (!p.zones.empty() && p.zones.front().inner_radius_mm > 0 &&
       std::abs(p.offset_mm) >= p.zones.front().inner_radius_mm)
     gear.refuse("offset", "offset = {} mm reaches the inner radius {} mm", p.offset_mm,
@@ -141,6 +143,10 @@ bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear) {
   p.backlash_mm = gear.number_or("backlash", kLengthOrZero, p.backlash_mm);
   if (module && p.backlash_mm >= *module)
     gear.refuse("backlash", "backlash = {} mm is not below outer_transverse_module = {} mm", p.backlash_mm, *module);
+  if (gear.misplaced("modification"))
+    gear.refuse("modification",
+                "modification is not known for bevel gears: their flanks are those that the profile of the finger mill "
+                "leaves; only face gears are modified");
   optional_cylinder(gear, "hub", p.hub_diameter_mm, p.hub_length_mm);
   optional_cylinder(gear, "shaft", p.shaft_diameter_mm, p.shaft_length_mm);
   if (p.face_width_mm > 0 && p.pitch_angle_rad > 0 && module && p.teeth > 0) {
@@ -169,7 +175,7 @@ constexpr GearType kGearTypes[] = {
     {"face_gear",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
        auto stock = root.table("stock");
-       job.gear = read_face_gear(gear, stock ? &*stock : nullptr, job.warnings);
+       job.gear = read_face_gear(gear, stock ? &*stock : nullptr, job.directory(), job.warnings);
      }},
     {"equal_base_circle_bevel_gear",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
@@ -181,6 +187,8 @@ constexpr GearType kGearTypes[] = {
 static_assert(std::size(kGearTypes) == std::variant_size_v<decltype(Job::gear)>);
 
 }  // namespace
+
+std::string Job::directory() const { return std::filesystem::path(file).parent_path().string(); }
 
 const char* Job::gear_type() const { return kGearTypes[gear.index()].word; }
 

@@ -16,6 +16,7 @@
 #include "geometry/bevel_gear/parameters.h"
 #include "geometry/contact/pinion.h"
 #include "geometry/face_gear/parameters.h"
+#include "geometry/modification/modification.h"
 #include "machines/coolant.h"
 #include "machines/toml/table_reader.h"
 #include "postproc/joints/setup.h"
@@ -90,7 +91,8 @@ inline constexpr toml::Range kContactTorque{1e-6, 1e9, " N m"}, kContactPosition
 struct ContactSettings {
   int pinion_teeth = 0;  ///< N_p; 0: mate_teeth of the gear
   contact::Misalignment moved;
-  double compound_mm = 0.006;  ///< thickness of the marking compound
+  double compound_mm = 0.006;                             ///< thickness of the marking compound
+  std::vector<modification::Modification> modifications;  ///< of the pinion's flanks
   std::optional<ContactLoad> load;
 };
 
@@ -125,6 +127,8 @@ struct Job {
 
   /// Position of a key, of the nearest table above it where the key was not written, or of the file.
   [[nodiscard]] SourcePosition where(std::string_view key) const;
+  /// Where the job lies: files that it names are looked up there.
+  [[nodiscard]] std::string directory() const;
   /// The word of the gear's type, as job files say it.
   [[nodiscard]] const char* gear_type() const;
   [[nodiscard]] const face_gear::FaceGearParameters* face_gear() const {

@@ -355,13 +355,17 @@ ContactLoad read_contact_load(toml::TableReader& table) {
 
 }  // namespace
 
-ContactSettings read_contact(toml::TableReader& table) {
+ContactSettings read_contact(toml::TableReader& table, const Job& job) {
   ContactSettings c;
   c.pinion_teeth = table.optional_integer("pinion_teeth", kPinionTeeth).value_or(0);
   c.moved.offset_mm = table.number_or("offset_error", kMoved, c.moved.offset_mm);
   c.moved.axial_mm = table.number_or("axial_error", kMoved, c.moved.axial_mm);
   c.moved.angle_rad = radians(table.number_or("angle_error", kAngleError, degrees(c.moved.angle_rad)));
   c.compound_mm = table.number_or("compound", kCompound, c.compound_mm);
+  if (job.face_gear()) c.modifications = read_modifications(table, job.directory());
+  else if (table.misplaced("modification"))
+    table.refuse("modification", "modification belongs to face gears and their pinions; this gear is {}",
+                 job.gear_type());
   if (auto load = table.table("load")) c.load = read_contact_load(*load);
   table.finish();
   return c;

@@ -9,6 +9,11 @@ namespace toothpath::job {
 /// [gear] with its type, and [stock] where there is one.
 void read_gear(toml::TableReader& root, Job& job);
 
+/// The [[modification]] tables of a gear or a pinion.
+/// @param directory  of the job: grids are looked up there
+[[nodiscard]] std::vector<modification::Modification> read_modifications(toml::TableReader& owner,
+                                                                         const std::string& directory);
+
 /// What a [[tool]] is read in.
 struct ToolContext {
   const bevel_gear::BevelGearParameters* bevel = nullptr;  ///< the gear, when it is a bevel gear: a finger mill's flute
@@ -31,7 +36,7 @@ void check_regions(toml::TableReader& root, const std::vector<path::MillingOpera
 /// its warnings say where the part stands
 [[nodiscard]] joints::Setup read_setup(toml::TableReader& table, Job& job);
 [[nodiscard]] shaper::Shaping read_shaping(toml::TableReader& table);
-[[nodiscard]] ContactSettings read_contact(toml::TableReader& table);
+[[nodiscard]] ContactSettings read_contact(toml::TableReader& table, const Job& job);
 [[nodiscard]] VerifySettings read_verify(toml::TableReader& table, bool bevel);
 [[nodiscard]] ProgramSettings read_program_settings(toml::TableReader& table);
 [[nodiscard]] MaterialSettings read_material(toml::TableReader& table);

@@ -46,6 +46,7 @@ struct PartFacts {
   double diameter_mm = 0;        ///< of the finished teeth
   double swing_diameter_mm = 0;  ///< of all that turns with them: teeth, hub, shaft
   std::vector<std::string> warnings;
+  std::optional<report::ModifiedFlanks> modified = {};  ///< none where the flanks are plain
 };
 
 /// How fine the facets of a mesh are: as those of gear.stl, or a few thousand a pitch for pictures.

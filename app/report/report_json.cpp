@@ -405,7 +405,46 @@ void add_solid(Json& json, const RunReport& r) {
                        {"too_thick_mm", r.roughed->thick_mm}};
 }
 
+Json most_json(const face_gear::ModifiedForm::Most& most, const char* key, double scale) {
+  return {{key, most.value * scale}, {"side", most.side}, {"r", most.radius_mm}, {"z", most.height_mm}};
+}
+
+Json modifications_json(const ModifiedFlanks& modified) {
+  Json list = Json::array(), zones = Json::array();
+  for (const auto& m : modified.list) {
+    Json one = {{"kind", to_string(m.kind)}, {"flank", to_string(m.flanks)}};
+    if (!m.grid) one["amount_um"] = m.amount_mm * 1000;
+    if (modification::is_relief(m.kind)) {
+      one["length_mm"] = m.length_mm;
+      one["law"] = to_string(m.law);
+    }
+    if (m.kind == modification::Kind::end_relief) one["end"] = to_string(m.ends);
+    if (m.zone) one["zone"] = *m.zone;
+    list.push_back(std::move(one));
+  }
+  for (const auto& z : modified.zones) {
+    const face_gear::ModifiedForm& f = z.form;
+    Json one = {{"zone", z.zone},
+                {"most_removed", most_json(f.removed_mm, "um", 1000)},
+                {"most_turned", most_json(f.turned_rad, "mrad", 1000)},
+                {"least_land", {{"mm", f.land_mm.value}, {"r", f.land_mm.radius_mm}, {"plain_mm", f.plain_land_mm}}}};
+    if (std::isfinite(f.hollow_flank.value)) one["hollow_flank"] = most_json(f.hollow_flank, "radius_mm", 1);
+    if (std::isfinite(f.hollow_fillet.value)) {
+      one["hollow_fillet"] = most_json(f.hollow_fillet, "radius_mm", 1);
+      one["hollow_fillet"]["plain_mm"] = f.plain_hollow_fillet_mm;
+    }
+    zones.push_back(std::move(one));
+  }
+  return {{"list", std::move(list)}, {"zones", std::move(zones)}};
+}
+
 }  // namespace
+
+double ModifiedFlanks::most_removed_mm() const {
+  double most = 0;
+  for (const Zone& z : zones) most = std::max(most, z.form.removed_mm.value);
+  return most;
+}
 
 std::string report_json(const RunReport& r) {
   Json json;
@@ -446,6 +485,7 @@ std::string report_json(const RunReport& r) {
     json["ledger"] = std::move(ledger);
     json["assumed"] = text_list(r.assumed);
   }
+  if (r.modified) json["modifications"] = modifications_json(*r.modified);
   add_correction(json, r);
   add_solid(json, r);
   json["warnings"] = text_list(r.warnings);

@@ -14,7 +14,7 @@
 #include "app/report/scene_report.h"
 #include "app/report/section.h"
 #include "cam/proof/verification.h"
-#include "geometry/face_gear/flank_correction.h"
+#include "geometry/face_gear/flank_field.h"
 #include "geometry/inspection/tooth_index.h"
 #include "postproc/bodies/moves.h"
 #include "postproc/joints/program.h"
@@ -42,6 +42,17 @@ struct CorrectionRow {
   std::string file;  ///< what was fitted
   int teeth = 1;     ///< on which it was measured
   face_gear::CorrectionResidual fit;
+};
+
+/// Flanks whose drawing takes something off the plain ones: what, and what it comes to.
+struct ModifiedFlanks {
+  struct Zone {
+    int zone = 0;
+    face_gear::ModifiedForm form;
+  };
+  std::vector<modification::Modification> list;
+  std::vector<Zone> zones;  ///< those that are modified
+  [[nodiscard]] double most_removed_mm() const;
 };
 
 /// How wrong the length of a tool may be before a proven program leaves its limits (docs/setup_sheet.md).
@@ -136,6 +147,7 @@ struct RunReport {
   std::string force_basis;          ///< of the forces of the operations: coefficients and where they are from
   std::vector<SceneVerdict> scene;  ///< fixture and stock, where meshes of them were given
   std::optional<bodies::MovesFound> machine_moves;  ///< none where no program was proven
+  std::optional<ModifiedFlanks> modified;           ///< none where the flanks are plain
   std::vector<CorrectionRow> correction;            ///< empty: the nominal flanks are the target
   inspection::IndexOfTeeth index;                   ///< pitch and run-out, where several teeth were measured
   std::optional<CadReport> cad;                     ///< none where no solid was asked for

@@ -98,6 +98,10 @@ void results_row(std::string& out, const RunReport& report) {
 
 /// What was made beside the program.
 void made_rows(std::string& out, const RunReport& report) {
+  if (report.modified)
+    row(out, "modified flanks",
+        fmt::format("up to {:.2f} um are taken off the plain ones; what is nominal here is the modified flank",
+                    report.modified->most_removed_mm() * app::kUm));
   for (const auto& c : report.correction)
     row(out, "correction",
         fmt::format(

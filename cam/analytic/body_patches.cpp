@@ -93,7 +93,6 @@ void BodyPatches::add_block(face_gear::SpacePiece piece, const std::vector<Sheet
   half_b *= 1 + 1e-12;
   if (const auto bend = bounds_.over(piece, block.frame, half_a, half_b)) {
     block.bend = *bend;
-    sampled_ += space_.ring().correction && piece != face_gear::SpacePiece::root;
   } else if (cells.size() > 1) {
     for (const auto& c : cells) add_block(piece, {c});  // a smaller box may do
     return;

@@ -104,7 +104,7 @@ class BodyPatches {
   /// border.
   [[nodiscard]] std::optional<Vec3> settled(std::size_t cell, const Vec2& at) const;
 
-  /// Blocks whose bound is sampled, not proven: those of a corrected ring, and where interval arithmetic finds none.
+  /// Blocks whose bound is sampled, not proven: where interval arithmetic finds none.
   [[nodiscard]] std::size_t sampled_blocks() const { return sampled_; }
   [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }
 

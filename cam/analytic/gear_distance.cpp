@@ -16,7 +16,7 @@ namespace {
 constexpr double kTreeError = 1e-7;  // mm: of distances to facets, with room to spare
 constexpr double kBorder = 1e-9;     // a foot this far beyond the border of a piece (in its parameter) still counts
 // Corrected pieces share their normals to 1e-5 only; a foot so little beyond is about 1e-6 mm wrong.
-constexpr double kCorrectedBorder = 3e-5;
+constexpr double kDisplacedBorder = 3e-5;
 constexpr double kShortLine = 0.5;  // a line that spans more than this share of its radius is not looked at
 
 /// Radii and heights that some places have.
@@ -240,7 +240,7 @@ class GearDistance::Impl::Question {
   /// Does a foot lie on its piece, not on the continuation beyond its borders?
   [[nodiscard]] static bool on_piece(const GearRing& ring, face_gear::SpacePiece piece, double u) {
     const auto& w = ring.space.surface().shaper;
-    const double slack = ring.space.ring().correction ? kCorrectedBorder : kBorder;
+    const double slack = ring.space.ring().displaced() ? kDisplacedBorder : kBorder;
     switch (piece) {
       case face_gear::SpacePiece::flank_plus:
       case face_gear::SpacePiece::flank_minus: return u <= w.theta_t + slack;

@@ -11,7 +11,6 @@ namespace {
 using First = Dual<Interval, 2>;  // value and first derivatives over a box
 using Second = Dual<First, 2>;    // and second derivatives
 
-constexpr int kSampled = 5;          // second differences along each side of a box of a corrected patch
 constexpr double kUnit = 1 + 1e-14;  // covers the rounding of a few operations
 
 /// A parameter that moves by (da, db) with the two coordinates.
@@ -78,14 +77,19 @@ struct PatchBounds::Kernels {
   face_gear::FaceGearSurface<Second> f2;
   face_gear::FaceGearSurface<First> f1;
 
-  [[nodiscard]] Jet over(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a, double half_b) const {
+  [[nodiscard]] Jet over(const face_gear::SpaceSheet& space, face_gear::SpacePiece piece, const PatchFrame& frame,
+                         double half_a, double half_b) const {
     const Interval a(-half_a, half_a), b(-half_b, half_b);
     const Vec2 &o = frame.origin, &x = frame.along_a, &y = frame.along_b;
     const Second u = variable(Interval(o[0]) + a * x[0] + b * y[0], x[0], y[0]),
                  v = variable(Interval(o[1]) + a * x[1] + b * y[1], x[1], y[1]);
     const int s = piece == face_gear::SpacePiece::flank_plus || piece == face_gear::SpacePiece::fillet_plus ? 1 : -1;
-    if (piece == face_gear::SpacePiece::fillet_plus || piece == face_gear::SpacePiece::fillet_minus)
-      return fillet(s, u, v);
+    const bool moved = !space.field(s).none();
+    if (piece == face_gear::SpacePiece::fillet_plus || piece == face_gear::SpacePiece::fillet_minus) {
+      Jet jet = fillet(s, u, v);
+      if (moved) add(jet, fillet_offset(*space.blend(s), s, u, v));
+      return jet;
+    }
     Vec3T<Second> p;
     if (piece == face_gear::SpacePiece::root) {
       const Second twist = atan2(Second(-f2.E * f2.Cg), Second(f2.Sg * v)) - f2.shaper.kappa * (v - f2.L0);
@@ -96,16 +100,36 @@ struct PatchBounds::Kernels {
       if (s < 0) p = f2.turned(p, f2.pitch);
     }
     Jet jet;
+    add(jet, p);
+    if (moved && piece != face_gear::SpacePiece::root) add(jet, flank_offset(space.field(s), s, u, v));
+    return jet;
+  }
+
+  static void add(Jet& jet, const Vec3T<Second>& p) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Second& c = p[int(k)];
-      jet.place[k] = c.v.v;
-      jet.first[0][k] = c.v.d[0];
-      jet.first[1][k] = c.v.d[1];
-      jet.second[0][k] = c.d[0].d[0];
-      jet.second[1][k] = c.d[0].d[1];
-      jet.second[2][k] = c.d[1].d[1];
+      jet.place[k] += c.v.v;
+      jet.first[0][k] += c.v.d[0];
+      jet.first[1][k] += c.v.d[1];
+      jet.second[0][k] += c.d[0].d[0];
+      jet.second[1][k] += c.d[0].d[1];
+      jet.second[2][k] += c.d[1].d[1];
     }
-    return jet;
+  }
+
+  /// What a field moves a flank by, and a blend its fillet; small, so that their own levers may be long.
+  [[nodiscard]] Vec3T<Second> flank_offset(const face_gear::FlankField& field, int side, const Second& theta,
+                                           const Second& B) const {
+    const face_gear::FaceGearSurface<Second>::FlankPlace at(f2, side, theta, B);
+    const auto n = at.point(at.turn()).n;
+    return placed(Vec3T<Second>(n * field.offset(f2, theta, at.housing())), side);
+  }
+  [[nodiscard]] Vec3T<Second> fillet_offset(const face_gear::FilletBlend& blend, int side, const Second& A,
+                                            const Second& Z) const {
+    return placed(Vec3T<Second>(f2.fillet(side, A, Z).n * blend.at(A, Z)), side);
+  }
+  [[nodiscard]] Vec3T<Second> placed(const Vec3T<Second>& v, int side) const {
+    return side > 0 ? v : f2.turned(v, f2.pitch);
   }
 
   /// The fillet from its first derivatives. With P the place in the housing frame, e = e(B), A the normal angle and Z
@@ -154,34 +178,13 @@ PatchBounds::PatchBounds(PatchBounds&&) noexcept = default;
 
 std::optional<PatchBend> PatchBounds::over(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a,
                                            double half_b) const {
-  if (space_.ring().correction && piece != face_gear::SpacePiece::root) return sampled(piece, frame, half_a, half_b);
-  return PatchBend::of(kernels_->over(piece, frame, half_a, half_b).second);
-}
-
-std::optional<PatchBend> PatchBounds::sampled(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a,
-                                              double half_b) const {
-  PatchBend bend;
-  const double ha = 0.5 * half_a, hb = 0.5 * half_b;
-  for (int i = 0; i < kSampled; ++i)
-    for (int j = 0; j < kSampled; ++j) {
-      const double a = half_a * (2.0 * i / (kSampled - 1) - 1), b = half_b * (2.0 * j / (kSampled - 1) - 1);
-      std::array<std::optional<face_gear::PatchPoint>, 9> q;
-      for (std::size_t n = 0; n < 9; ++n) {
-        const Vec2 uv = frame.uv({a + (double(n % 3) - 1) * ha, b + (double(n / 3) - 1) * hb});
-        if (!(q[n] = space_.point(piece, uv.x(), uv.y()))) return {};
-      }
-      const auto p = [&](std::size_t n) -> const Vec3& { return q[n]->p; };
-      bend.spread_aa = std::max(bend.spread_aa, kSampleDoubt * (p(3) - 2 * p(4) + p(5)).norm() / (ha * ha));
-      bend.spread_bb = std::max(bend.spread_bb, kSampleDoubt * (p(1) - 2 * p(4) + p(7)).norm() / (hb * hb));
-      bend.spread_ab = std::max(bend.spread_ab, kSampleDoubt * (p(0) - p(2) - p(6) + p(8)).norm() / (4 * ha * hb));
-    }
-  return bend;
+  return PatchBend::of(kernels_->over(space_, piece, frame, half_a, half_b).second);
 }
 
 std::optional<CurveBend> PatchBounds::tip_azimuth(int side, const face_gear::TipPlace& from, double r_from,
                                                   const face_gear::TipPlace& to, double r_to) const {
-  if (space_.ring().correction) return {};
   const auto& f = kernels_->f2;
+  const face_gear::FlankField field = space_.field(side);
   const Second z = f.z_tip(variable(Interval(r_from, r_to), 1, 0));
   const Interval z1 = z.v.d[0];
   for (const double margin : {1.0, 3.0}) {
@@ -190,7 +193,12 @@ std::optional<CurveBend> PatchBounds::tip_azimuth(int side, const face_gear::Tip
     const Second u =
         variable({std::min(from.at.theta, to.at.theta) - du, std::max(from.at.theta, to.at.theta) + du}, 1, 0);
     const Second v = variable({std::min(from.at.B, to.at.B) - dv, std::max(from.at.B, to.at.B) + dv}, 0, 1);
-    const Vec3T<Second> P = f.flank_housing(side, u, v);
+    const face_gear::FaceGearSurface<Second>::FlankPlace place(f, side, u, v);
+    Vec3T<Second> P = place.housing();
+    if (!field.none()) {
+      const face_gear::FaceGearSurface<Second>::Turn still(Second(0));
+      P += place.point(still).n * field.offset(f, u, P);
+    }
     const Second r = sqrt(Second(P[0] * P[0] + P[1] * P[1])),
                  azimuth = atan2(P[1], P[0]) - f.i * f.flank_phi(side, u, v);
     const Interval ru = r.v.d[0], rv = r.v.d[1], zu = P[2].v.d[0], zv = P[2].v.d[1], det = ru * zv - rv * zu;
@@ -208,8 +216,7 @@ std::optional<CurveBend> PatchBounds::tip_azimuth(int side, const face_gear::Tip
 
 std::optional<VectorBound> PatchBounds::bend_at_radius(face_gear::SpacePiece piece, const PatchFrame& frame,
                                                        double half_a, double half_b) const {
-  if (space_.ring().correction && piece != face_gear::SpacePiece::root) return {};
-  const Jet p = kernels_->over(piece, frame, half_a, half_b);
+  const Jet p = kernels_->over(space_, piece, frame, half_a, half_b);
   const Interval &x = p.place[0], &y = p.place[1], r = sqrt(square(x) + square(y));
   const auto slope = [&](std::size_t n) { return (x * p.first[n][0] + y * p.first[n][1]) / r; };
   const Interval ra = slope(0), rb = slope(1), b1 = -ra / rb;

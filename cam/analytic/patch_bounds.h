@@ -62,14 +62,12 @@ class PatchBounds {
   ~PatchBounds();
   PatchBounds(PatchBounds&&) noexcept;
 
-  /// Over the box |a| <= half_a, |b| <= half_b. Nothing where no bound is found. Nominal surfaces: proven. The flanks
-  /// and fillets of a corrected ring: three times the greatest of 25 second differences, which is measured, not proven.
+  /// Over the box |a| <= half_a, |b| <= half_b. Nothing where no bound is found. Proven, of displaced rings, too.
   [[nodiscard]] std::optional<PatchBend> over(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a,
                                               double half_b) const;
 
   /// The azimuth of the tip edge of `side` as a function of the radius, between two places of it. Proven: the edge
-  /// cannot leave a box about the two places in which its slope is bounded. Nothing where no such box is found, and for
-  /// a corrected ring.
+  /// cannot leave a box about the two places in which its slope is bounded. Nothing where no such box is found.
   [[nodiscard]] std::optional<CurveBend> tip_azimuth(int side, const face_gear::TipPlace& from, double r_from,
                                                      const face_gear::TipPlace& to, double r_to) const;
 
@@ -83,8 +81,6 @@ class PatchBounds {
 
  private:
   struct Kernels;
-  [[nodiscard]] std::optional<PatchBend> sampled(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a,
-                                                 double half_b) const;
   const face_gear::SpaceSheet& space_;
   std::unique_ptr<Kernels> kernels_;
 };

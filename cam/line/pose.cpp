@@ -45,8 +45,6 @@ Result<FlankTask> flank_task(const face_gear::FaceGear& gear, int zone, int side
         "shaft_angle = {:.4f} deg: line milling is known for 90 deg only, where the tips lie in a plane and all that "
         "is above it is free",
         degrees(p.shaft_angle_rad));
-  if (ring.correction)
-    return fail("flanks with corrections cannot be line milled: the distance to them has no closed form");
   FlankTask t;
   t.surface = ring.surface;
   t.zone = zone;
@@ -61,6 +59,7 @@ Result<FlankTask> flank_task(const face_gear::FaceGear& gear, int zone, int side
     return fail("zone {}: flank {:+d} has no fillet line below the tips at radius {:.3f} mm", zone, side, middle);
   t.z_end = *z_end;
   t.module_mm = p.module_mm;
+  if (ring.displaced()) t.displaced = std::make_shared<const face_gear::SpaceSheet>(p, ring);
   return t;
 }
 
@@ -89,8 +88,21 @@ std::optional<GapNode> LineFit::gap_at(const AxisLine<double>& axis, double t, c
   const Vec3 x = axis.at(t);
   const auto foot = flank_foot<double>(flank_.surface, flank_.side, x, start);
   if (!foot) return {};
+  if (flank_.displaced) return displaced_gap(x, t, *foot);
   const Vec3 touched = x - foot->d * foot->n;
   return GapNode{t, foot->d - law_.rho(t), touched.head<2>().norm(), touched.z(), foot->theta_foot, foot->at, foot->n};
+}
+
+/// On a modified or corrected flank: from the foot on the plain one, hundredths of a millimetre away.
+std::optional<GapNode> LineFit::displaced_gap(const Vec3& x, double t, const face_gear::FlankFoot<double>& near) const {
+  using Surface = face_gear::FaceGearSurface<double>;
+  const Surface::Turn to_space(flank_.side > 0 ? 0.0 : flank_.surface.pitch);
+  const auto foot =
+      flank_.displaced->foot(flank_.side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus,
+                             to_space(x), near.theta_foot, near.at.B);
+  if (!foot) return {};
+  return GapNode{t,       foot->distance - law_.rho(t), foot->at.p.head<2>().norm(), foot->at.p.z(), foot->u,
+                 near.at, to_space.back(foot->at.n)};
 }
 
 /// How far a foot lies inside the trimmed flank and a rim beyond the ends of the ring; negative outside. mm

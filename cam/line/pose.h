@@ -6,12 +6,14 @@
 // still. Gear frame, tooth 0, mm, rad. Derivation: docs/line_milling.md, section 4.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "cam/line/contact.h"
 #include "geometry/base/result.h"
 #include "geometry/face_gear/gear.h"
+#include "geometry/face_gear/space_sheet.h"
 
 namespace toothpath::line {
 
@@ -24,10 +26,11 @@ struct FlankTask {
   double theta_end = 0;  ///< roll parameter at the fillet line
   double z_end = 0;      ///< height of the fillet line in the middle of the ring
   double module_mm = 0;
+  std::shared_ptr<const face_gear::SpaceSheet> displaced;  ///< of a modified or corrected ring; null: plain
 };
 
-/// The flank of one side of a ring. Refused: a shaft angle other than 90 deg, corrected flanks (their distance is not
-/// closed form), a ring whose flank has no fillet line at its middle.
+/// The flank of one side of a ring. Refused: a shaft angle other than 90 deg, a ring whose flank has no fillet line at
+/// its middle.
 [[nodiscard]] Result<FlankTask> flank_task(const face_gear::FaceGear& gear, int zone, int side);
 
 /// A strip of the flank between two heights; without `bottom` it ends at the fillet line.
@@ -146,6 +149,8 @@ class LineFit {
     TangentFrame<double> frame;
   };
   [[nodiscard]] std::optional<Anchor> anchor(double r) const;
+  [[nodiscard]] std::optional<GapNode> displaced_gap(const Vec3& x, double t,
+                                                     const face_gear::FlankFoot<double>& near) const;
   [[nodiscard]] double inside(const GapNode& node, double rim) const;
   [[nodiscard]] std::vector<GapNode> walk(const AxisLine<double>& axis, double t_start,
                                           const Place<double>& start) const;

@@ -20,11 +20,55 @@ bool ContactFlank::exact() const {
   return std::all_of(deviation_mm.begin(), deviation_mm.end(), [](double d) { return d == 0; });
 }
 
+modification::Rectangle rectangle_of(const Pinion<double>& pinion, const face_gear::FaceGearRing& ring) {
+  const auto& f = ring.surface;
+  const auto section = [&](double r) { return (std::sqrt(r * r - f.E * f.E) + f.shaper.r_p * f.Cg) / f.Sg; };
+  return {2 * (pinion.r_a - pinion.r_p), section(ring.zone.inner_radius_mm), section(ring.zone.outer_radius_mm)};
+}
+
+double set_back(const Pinion<double>& pinion, const modification::Field& field, int side,
+                const Pinion<double>::Place& place) {
+  // The normal of the parallel flank through the place, in the pinion's own directions (d, b, a).
+  const double theta = std::sqrt((place.radius - pinion.r_b) * (place.radius + pinion.r_b)) / pinion.r_b,
+               B = std::atan2(place.y, place.x) + side * std::atan(theta);
+  const double n_x = -side * pinion.cos_bb * std::sin(B), n_y = side * pinion.cos_bb * std::cos(B),
+               n_Z = -side * pinion.sin_bb;
+  double back = 0;
+  for (int k = 0; k < 30; ++k) {  // the foot on the plain flank; amounts change by hundredths along it
+    const double next =
+        field.removal(pinion.r_a - std::hypot(place.x - back * n_x, place.y - back * n_y), place.Z - back * n_Z);
+    if (std::abs(next - back) < 1e-14) return next;
+    back = next;
+  }
+  return back;
+}
+
+namespace {
+
+/// The sheet of a modified ring, for flanks that may outlive the gear.
+std::shared_ptr<const face_gear::SpaceSheet> modified_sheet(const face_gear::FaceGear& gear, int zone) {
+  if (!gear.rings().at(static_cast<std::size_t>(zone)).modification) return nullptr;
+  return std::make_shared<const face_gear::SpaceSheet>(gear.drawn(static_cast<std::size_t>(zone)));
+}
+
+/// Where a modified flank ends at radius r; the plain one ends at height `plain`.
+std::optional<double> modified_fillet_line(const face_gear::SpaceSheet& sheet, int side, double r, double plain) {
+  const auto near = face_gear::invert_flank(sheet.surface(), side, r, plain);
+  const double theta_t = sheet.surface().shaper.theta_t;
+  const auto B = near ? sheet.B_at_radius(side, theta_t, r, near->B) : std::nullopt;
+  if (!B) return {};
+  return sheet.flank(side, theta_t, *B).p.z();
+}
+
+}  // namespace
+
 Result<ContactFlank> exact_flank(const face_gear::FaceGear& gear, int zone, int side, int rows, int columns) {
   if (rows < 3 || columns < 3) return fail("a flank needs at least 3 x 3 places, not {} x {}", rows, columns);
   const face_gear::FaceGearRing& ring = gear.rings().at(static_cast<std::size_t>(zone));
   ContactFlank flank;
   flank.surface = ring.surface;
+  flank.modified = modified_sheet(gear, zone);
+  const face_gear::SpaceSheet& sheet = gear.drawn(static_cast<std::size_t>(zone));
   flank.zone = zone;
   flank.side = side;
   flank.rows = rows;
@@ -39,28 +83,30 @@ Result<ContactFlank> exact_flank(const face_gear::FaceGear& gear, int zone, int 
   for (int c = 0; c < columns; ++c) {
     const double r =
         ring.zone.inner_radius_mm + (ring.zone.outer_radius_mm - ring.zone.inner_radius_mm) * c / (columns - 1);
-    const auto low = face_gear::fillet_line_height(ring.surface, side, r);
-    auto top = low ? face_gear::invert_flank(ring.surface, side, r, ring.surface.z_tip(r), near) : std::nullopt;
-    if (!top) return fail("the flank of side {:+} does not reach from tip to fillet at radius {:.4f} mm", side, r);
+    auto low = face_gear::fillet_line_height(ring.surface, side, r);
+    auto top = low ? sheet.invert(side, r, ring.surface.z_tip(r), near) : std::nullopt;
+    if (low && flank.modified) low = modified_fillet_line(sheet, side, r, *low);
+    if (!low || !top)
+      return fail("the flank of side {:+} does not reach from tip to fillet at radius {:.4f} mm", side, r);
     double z_top = ring.surface.z_tip(r);
     if (top->theta < 0) {  // the tip lies inside the base circle: the involute starts lower
-      const auto B = face_gear::flank_B_at_radius(ring.surface, side, 0, r, top->B);
+      const auto B = sheet.B_at_radius(side, 0, r, top->B);
       if (!B) return fail("no start of the involute of side {:+} at radius {:.4f} mm", side, r);
       top->theta = 0;
       top->B = *B;
-      z_top = ring.surface.flank_housing(side, 0.0, *B).z();
+      z_top = flank.modified ? sheet.flank(side, 0, *B).p.z() : ring.surface.flank_housing(side, 0.0, *B).z();
     }
     near = top;
     for (int k = 0; k < rows; ++k) {
       const int row = rows - 1 - k;
       const double z = z_top + (*low - z_top) * k / (rows - 1);
-      const auto at = k == 0 ? top : face_gear::invert_flank(ring.surface, side, r, z, near);
+      const auto at = k == 0 ? top : sheet.invert(side, r, z, near);
       if (!at) return fail("no point of the flank of side {:+} at radius {:.4f} mm, height {:.4f} mm", side, r, z);
       if (k > 0) near = at;
       const std::size_t n = flank.index(row, c);
       flank.theta[n] = at->theta;
       flank.B[n] = at->B;
-      const auto p = ring.surface.flank(side, at->theta, at->B);
+      const auto p = flank.at(at->theta, at->B);
       flank.points[n] = p.p;
       flank.normals[n] = p.n;
     }
@@ -77,6 +123,7 @@ Result<ContactFlank> measured_flank(const face_gear::FaceGear& gear, int zone, i
     return fail("{} x {} places, but {} points and {} deviations", rows, columns, nominal.size(), deviation_mm.size());
   ContactFlank flank;
   flank.surface = gear.rings().at(static_cast<std::size_t>(zone)).surface;
+  flank.modified = modified_sheet(gear, zone);
   flank.zone = zone;
   flank.side = side;
   flank.rows = rows;
@@ -96,7 +143,7 @@ Result<ContactFlank> measured_flank(const face_gear::FaceGear& gear, int zone, i
       const auto from =
           static_cast<std::size_t>((flip_rows ? rows - 1 - r : r) * columns + (flip_columns ? columns - 1 - c : c));
       const Vec3& p = nominal[from];
-      const auto at = face_gear::invert_flank(flank.surface, side, radius(p), p.z(), near);
+      const auto at = gear.drawn(static_cast<std::size_t>(zone)).invert(side, radius(p), p.z(), near);
       if (!at)
         return fail("the point at radius {:.4f} mm, height {:.4f} mm is not on the flank of side {:+}", radius(p),
                     p.z(), side);
@@ -104,7 +151,7 @@ Result<ContactFlank> measured_flank(const face_gear::FaceGear& gear, int zone, i
       const std::size_t n = flank.index(r, c);
       flank.theta[n] = at->theta;
       flank.B[n] = at->B;
-      const auto exact = flank.surface.flank(side, at->theta, at->B);
+      const auto exact = flank.at(at->theta, at->B);
       flank.points[n] = exact.p;
       flank.normals[n] = exact.n;
       flank.deviation_mm[n] = deviation_mm[from];

@@ -7,11 +7,13 @@
 // surfaces with their deviations is found the same way. Derivation: docs/contact.md.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "geometry/contact/path.h"
 #include "geometry/face_gear/gear.h"
+#include "geometry/face_gear/space_sheet.h"
 
 namespace toothpath::contact {
 
@@ -19,6 +21,7 @@ namespace toothpath::contact {
 /// tip; column 0 at the inner end of the ring.
 struct ContactFlank {
   face_gear::FaceGearSurface<double> surface;
+  std::shared_ptr<const face_gear::SpaceSheet> modified;  ///< null: the flank is plain
   int zone = 0, side = 1;
   int rows = 0, columns = 0;
   std::vector<double> theta, B;       ///< row-major
@@ -29,10 +32,14 @@ struct ContactFlank {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
   }
   [[nodiscard]] bool exact() const;  ///< no deviation anywhere
+  /// The nominal flank at its parameters, modification and all.
+  [[nodiscard]] face_gear::SurfacePointT<double> at(double theta_at, double B_at) const {
+    return modified ? modified->flank(side, theta_at, B_at) : surface.flank(side, theta_at, B_at);
+  }
 };
 
-/// The exact flank of a ring between its radii, from the fillet line (or the end of the involute) to the tip surface.
-/// Refused: fewer than 3 x 3 places; a radius that the flank does not reach.
+/// The flank of the drawing of a ring between its radii, from the fillet line (or the end of the involute) to the tip
+/// surface. Refused: fewer than 3 x 3 places; a radius that the flank does not reach.
 [[nodiscard]] Result<ContactFlank> exact_flank(const face_gear::FaceGear& gear, int zone, int side, int rows = 41,
                                                int columns = 49);
 
@@ -46,7 +53,18 @@ struct ContactFlank {
 struct ContactMember {
   ContactFlank flank;
   Pinion<double> pinion;
+  std::shared_ptr<const modification::Field> on_pinion = nullptr;  ///< its modification; null: plain flanks
+  [[nodiscard]] bool modified() const { return flank.modified != nullptr || on_pinion != nullptr; }
 };
+
+/// Depths and sections of a pinion over which its modifications are counted: from its tip cylinder down twice the
+/// addendum; along its axis between the sections whose pitch line meets the ends of the ring.
+[[nodiscard]] modification::Rectangle rectangle_of(const Pinion<double>& pinion, const face_gear::FaceGearRing& ring);
+
+/// How far modifications set the pinion's flank back along the normal that goes through a place beside it, mm.
+/// @param side  of the gear that the flank runs on
+[[nodiscard]] double set_back(const Pinion<double>& pinion, const modification::Field& field, int side,
+                              const Pinion<double>::Place& place);
 
 struct RollOptions {
   int steps = 48;              ///< positions a pitch

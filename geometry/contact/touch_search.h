@@ -21,10 +21,13 @@ struct GearTurn {
 };
 
 /// The pinion's turn, times the side, that a place of the gear asks for; never where the pinion has no involute.
-inline double asked_turn(const Pinion<double>& pinion, int side, const Vec3& point) {
+/// @param field  of the pinion; null: plain
+inline double asked_turn(const Pinion<double>& pinion, const modification::Field* field, int side, const Vec3& point) {
   const auto place = pinion.place(point);
   if (!(place.radius >= pinion.r_b) || !(place.radius <= pinion.r_a)) return kNever;
-  return side * pinion.turn_at(side, place);
+  const double plain = side * pinion.turn_at(side, place);
+  // Parallel involute helicoids are turned copies.
+  return field == nullptr ? plain : plain - set_back(pinion, *field, side, place) / (pinion.r_b * pinion.cos_bb);
 }
 
 template <typename F>
@@ -50,11 +53,15 @@ double golden_place(F&& f, double lo, double hi) {
 class TouchSearch {
  public:
   TouchSearch(const ContactMember& member, double phi_2)
-      : flank_(member.flank), pinion_(member.pinion), turn_(phi_2), exact_(member.flank.exact()) {
+      : flank_(member.flank),
+        pinion_(member.pinion),
+        on_pinion_(member.on_pinion.get()),
+        turn_(phi_2),
+        exact_(member.flank.exact()) {
     nodes_.resize(flank_.points.size());
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
-      nodes_[k] =
-          asked_turn(pinion_, flank_.side, turn_(flank_.points[k] + flank_.deviation_mm[k] * flank_.normals[k]));
+      nodes_[k] = asked_turn(pinion_, on_pinion_, flank_.side,
+                             turn_(flank_.points[k] + flank_.deviation_mm[k] * flank_.normals[k]));
       if (nodes_[k] > kNever) any_ = true;
     }
   }
@@ -110,11 +117,11 @@ class TouchSearch {
   /// Parameters are blended, so the point lies on the exact flank; its deviation is blended too.
   [[nodiscard]] Vec3 point_at(double row, double column) const {
     const Cell c = cell(row, column);
-    const auto p = flank_.surface.flank(flank_.side, blend(flank_.theta, c), blend(flank_.B, c));
+    const auto p = flank_.at(blend(flank_.theta, c), blend(flank_.B, c));
     return exact_ ? p.p : Vec3(p.p + blend(flank_.deviation_mm, c) * p.n);
   }
   [[nodiscard]] double value_at(double row, double column) const {
-    return row < 0 ? kNever : asked_turn(pinion_, flank_.side, turn_(point_at(row, column)));
+    return row < 0 ? kNever : asked_turn(pinion_, on_pinion_, flank_.side, turn_(point_at(row, column)));
   }
   /// Highest asked turn of a node column: the parabola through the best node and its neighbours, or the edge of the
   /// pinion's involute.
@@ -165,6 +172,7 @@ class TouchSearch {
 
   const ContactFlank& flank_;
   const Pinion<double>& pinion_;
+  const modification::Field* on_pinion_;
   GearTurn turn_;
   bool exact_, any_ = false;
   std::vector<double> nodes_;

@@ -21,8 +21,11 @@ constexpr int kLooks = 33;             ///< radii at which widths are looked at
 /// Sections of one ring, each continued from the nearest one that is known.
 class Sections {
  public:
-  Sections(const face_gear::FaceGearRing& ring, int teeth)
-      : surface_(ring.surface), teeth_(teeth), inner_(ring.zone.inner_radius_mm), outer_(ring.zone.outer_radius_mm) {}
+  Sections(const face_gear::SpaceSheet& sheet, int teeth)
+      : sheet_(sheet),
+        teeth_(teeth),
+        inner_(sheet.ring().zone.inner_radius_mm),
+        outer_(sheet.ring().zone.outer_radius_mm) {}
 
   [[nodiscard]] double radius(double u) const { return u >= 1 ? outer_ : inner_ + u * (outer_ - inner_); }
   Result<const ToothSection*> at(double u) {
@@ -34,14 +37,14 @@ class Sections {
       const auto before = std::prev(after);
       if (!near || u - before->first < after->first - u) near = &before->second;
     }
-    auto made = ToothSection::at(surface_, teeth_, radius(u), near);
+    auto made = ToothSection::at(sheet_, teeth_, radius(u), near);
     if (!made) return made.error();
     return &known_.emplace(u, std::move(*made)).first->second;
   }
   [[nodiscard]] int teeth() const { return teeth_; }
 
  private:
-  face_gear::FaceGearSurface<double> surface_;
+  face_gear::SpaceSheet sheet_;
   int teeth_;
   double inner_, outer_;
   std::map<double, ToothSection> known_;
@@ -119,9 +122,9 @@ Result<bool> floor_meets_root(Sections& sections, double u, double floor, bool r
       floor, above, kLeastFace_mm);
 }
 
-Result<ToothRing> make_ring(const face_gear::FaceGearRing& ring, std::size_t zone, int teeth,
+Result<ToothRing> make_ring(const face_gear::SpaceSheet& sheet, std::size_t zone, int teeth,
                             std::shared_ptr<Sections>& sections) {
-  sections = std::make_shared<Sections>(ring, teeth);
+  sections = std::make_shared<Sections>(sheet, teeth);
   const auto root = has_root(*sections);
   if (!root) return root.error();
   ToothRing out;
@@ -149,7 +152,7 @@ Result<GearShell> face_gear_shell(const face_gear::FaceGear& gear) {
   const auto& rings = gear.rings();
   std::vector<std::shared_ptr<Sections>> sections(rings.size());
   for (std::size_t k = 0; k < rings.size(); ++k) {
-    auto ring = make_ring(rings[k], k, shell.teeth, sections[k]);
+    auto ring = make_ring(gear.drawn(k), k, shell.teeth, sections[k]);
     if (!ring) return ring.error();
     shell.rings.push_back(std::move(*ring));
   }

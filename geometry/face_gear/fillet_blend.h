@@ -1,12 +1,10 @@
-// How a corrected flank runs into its fillet: the offset at the fillet line, value and slope, fades to nothing at the
+// How a displaced flank runs into its fillet: the offset at the fillet line, value and slope, fades to nothing at the
 // root land.
 #pragma once
 
-#include <vector>
-
 #include "geometry/base/dual.h"
-#include "geometry/face_gear/flank_correction.h"
-#include "geometry/face_gear/surface.h"
+#include "geometry/face_gear/flank_field.h"
+#include "geometry/modification/smooth_curve.h"
 
 namespace toothpath::face_gear {
 
@@ -16,23 +14,21 @@ namespace toothpath::face_gear {
 class FilletBlend {
  public:
   using Dual2 = Dual<double, 2>;
-  /// Sections Z in [from_mm, to_mm] are tabulated; beyond, and where no regular fillet line exists, the nearest values
-  /// hold.
-  FilletBlend(const FaceGearSurface<double>& surface, const FaceGearSurface<Dual2>& dual, const FlankCorrection& flank,
+  /// Sections Z in [from_mm, to_mm] are tabulated; where no regular fillet line exists the nearest values hold.
+  FilletBlend(const FaceGearSurface<double>& surface, const FaceGearSurface<Dual2>& dual, const FlankField& flank,
               int side, double from_mm, double to_mm);
 
-  struct Offset {
-    double value = 0, d_A = 0, d_Z = 0;
-  };
-  [[nodiscard]] Offset at(double A, double Z) const;
+  /// In any scalar of the kernels. Before A_t along the tangent, beyond A_e nothing.
+  template <typename S>
+  [[nodiscard]] S at(const S& A, const S& Z) const {
+    const S t = (A - S(A_t_)) / S(A_span_);
+    return value_(Z) * fades_(t) + slope_(Z) * swings_(t);
+  }
 
  private:
-  struct Entry {
-    double value = 0, slope = 0;      ///< offset and its derivative with the fraction of A at the fillet line
-    double d_value = 0, d_slope = 0;  ///< with the table's own step
-  };
-  double A_t_ = 0, A_span_ = 1, from_ = 0, step_ = 1;
-  std::vector<Entry> table_;
+  double A_t_ = 0, A_span_ = 1;
+  modification::SmoothCurve value_, slope_;   ///< at the fillet line over Z: offset, and its derivative with t
+  modification::SmoothCurve fades_, swings_;  ///< cubics in t that carry value and slope from 0 to 1
 };
 
 }  // namespace toothpath::face_gear

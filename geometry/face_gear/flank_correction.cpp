@@ -10,22 +10,6 @@ namespace {
 
 constexpr int kLeastRows = 5, kLeastColumns = 9;
 
-/// T_0 .. T_n and their derivatives at x; beyond [-1, 1] along the tangents.
-void chebyshev(double x, int n, std::vector<double>& T, std::vector<double>& dT) {
-  const double inside = std::clamp(x, -1.0, 1.0), beyond = x - inside;
-  T.assign(std::size_t(n) + 1, 1.0);
-  dT.assign(std::size_t(n) + 1, 0.0);
-  if (n >= 1) {
-    T[1] = inside;
-    dT[1] = 1;
-  }
-  for (std::size_t k = 2; k <= std::size_t(n); ++k) {
-    T[k] = 2 * inside * T[k - 1] - T[k - 2];
-    dT[k] = 2 * T[k - 1] + 2 * inside * dT[k - 1] - dT[k - 2];
-  }
-  for (std::size_t k = 0; k <= std::size_t(n); ++k) T[k] += beyond * dT[k];
-}
-
 struct Range {
   double low = INFINITY, high = -INFINITY;
   void add(double v) {
@@ -38,11 +22,18 @@ struct Range {
 
 }  // namespace
 
-double FlankCorrection::top(double r, double* slope) const {
-  const double y = (r - r_mid_) / r_half_, inside = std::clamp(y, -1.0, 1.0), beyond = y - inside;
-  const double d = top_[1] + inside * (2 * top_[2] + inside * 3 * top_[3]);
-  if (slope) *slope = d / r_half_;
-  return top_[0] + inside * (top_[1] + inside * (top_[2] + inside * top_[3])) + beyond * d;
+const modification::SmoothCurve& FlankCorrection::chebyshev(std::size_t k) {
+  using modification::SmoothCurve;
+  static const std::vector<SmoothCurve> kCurves = [] {
+    std::vector<std::array<double, SmoothCurve::kMostTerms>> c(SmoothCurve::kMostTerms);
+    c[0][0] = c[1][1] = 1;
+    for (std::size_t n = 2; n < c.size(); ++n)
+      for (std::size_t p = 0; p <= n; ++p) c[n][p] = (p > 0 ? 2 * c[n - 1][p - 1] : 0) - c[n - 2][p];
+    std::vector<SmoothCurve> curves;
+    for (const auto& terms : c) curves.push_back(SmoothCurve({-1, 1}, {{0, terms}}));
+    return curves;
+  }();
+  return kCurves[k];
 }
 
 FlankCorrection FlankCorrection::plus(const FlankCorrection& other) const {
@@ -76,15 +67,16 @@ Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> poi
   for (const auto& p : points) s.add(f.profile_at(p.theta, p.radius_mm));
   f.s_mid_ = s.middle();
   f.s_half_ = s.half();
-  f.profile_ = std::clamp(most.profile, 0, int(rows.size()) - 2);
-  f.lead_ = std::clamp(most.lead, 0, int(columns.size()) - 3);
+  constexpr int kMost = int(modification::SmoothCurve::kMostTerms) - 1;
+  f.profile_ = std::clamp(std::min(most.profile, kMost), 0, int(rows.size()) - 2);
+  f.lead_ = std::clamp(std::min(most.lead, kMost), 0, int(columns.size()) - 3);
 
   f.fit_series(points);
   return f;
 }
 
 double FlankCorrection::profile_at(double theta, double radius_mm) const {
-  return (theta_t_ - theta) / (theta_t_ - top(radius_mm, nullptr));
+  return (theta_t_ - theta) / (theta_t_ - top_((radius_mm - r_mid_) / r_half_));
 }
 
 /// theta at the tip over the radius: the top row of the grid, which keeps a margin; the scale of s takes that up.
@@ -100,16 +92,14 @@ void FlankCorrection::fit_top(std::span<const FlankDeviation> points, int top_ro
     w[k] = tops[std::size_t(k)]->theta;
   }
   const Eigen::VectorXd line = V.colPivHouseholderQr().solve(w);
-  for (std::size_t k = 0; k < 4; ++k) top_[k] = line[Eigen::Index(k)];
+  top_ = modification::SmoothCurve({-1, 1}, {{0, {line[0], line[1], line[2], line[3]}}});
 }
 
 void FlankCorrection::products_at(double theta, double radius_mm, Eigen::Ref<Eigen::RowVectorXd> row) const {
-  thread_local std::vector<double> X, dX, Y, dY;
-  chebyshev((profile_at(theta, radius_mm) - s_mid_) / s_half_, profile_, X, dX);
-  chebyshev((radius_mm - r_mid_) / r_half_, lead_, Y, dY);
+  const double x = (profile_at(theta, radius_mm) - s_mid_) / s_half_, y = (radius_mm - r_mid_) / r_half_;
   Eigen::Index column = 0;
-  for (const double x : X)
-    for (const double y : Y) row[column++] = x * y;
+  for (std::size_t i = 0; i <= std::size_t(profile_); ++i)
+    for (std::size_t j = 0; j <= std::size_t(lead_); ++j) row[column++] = chebyshev(i)(x) * chebyshev(j)(y);
 }
 
 void FlankCorrection::fit_series(std::span<const FlankDeviation> points) {
@@ -136,26 +126,9 @@ void FlankCorrection::fit_series(std::span<const FlankDeviation> points) {
 }
 
 FlankCorrection::Offset FlankCorrection::at(double theta, double radius_mm) const {
-  double slope = 0;
-  const double tip = top(radius_mm, &slope), height = theta_t_ - tip, s = (theta_t_ - theta) / height;
-  thread_local std::vector<double> X, dX, Y, dY;
-  chebyshev((s - s_mid_) / s_half_, profile_, X, dX);
-  chebyshev((radius_mm - r_mid_) / r_half_, lead_, Y, dY);
-  double value = 0, d_s = 0, d_r = 0;
-  std::size_t k = 0;
-  for (std::size_t i = 0; i < X.size(); ++i)
-    for (std::size_t j = 0; j < Y.size(); ++j, ++k) {
-      value += coefficients_[k] * X[i] * Y[j];
-      d_s += coefficients_[k] * dX[i] * Y[j];
-      d_r += coefficients_[k] * X[i] * dY[j];
-    }
-  d_s /= s_half_;
-  Offset sum{value, -d_s / height, d_r / r_half_ + d_s * s * slope / height};
-  if (other_) {
-    const Offset more = other_->at(theta, radius_mm);
-    sum = {sum.value + more.value, sum.d_theta + more.d_theta, sum.d_radius + more.d_radius};
-  }
-  return sum;
+  using Dual2 = Dual<double, 2>;
+  const Dual2 c = offset(Dual2::variable(theta, 0), Dual2::variable(radius_mm, 1));
+  return {c.v, c.d[0], c.d[1]};
 }
 
 }  // namespace toothpath::face_gear

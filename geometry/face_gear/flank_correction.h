@@ -7,13 +7,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "geometry/base/result.h"
+#include "geometry/modification/smooth_curve.h"
 
 namespace toothpath::face_gear {
 
@@ -82,10 +82,25 @@ class FlankCorrection {
     double value = 0, d_theta = 0, d_radius = 0;
   };
   [[nodiscard]] Offset at(double theta, double radius_mm) const;
+  /// The value in any scalar of the kernels.
+  template <typename S>
+  [[nodiscard]] S offset(const S& theta, const S& radius_mm) const {
+    const S y = (radius_mm - S(r_mid_)) / S(r_half_),
+            x = ((S(theta_t_) - theta) / (S(theta_t_) - top_(y)) - S(s_mid_)) / S(s_half_);
+    S sum(0);
+    std::size_t k = 0;
+    for (std::size_t i = 0; i <= std::size_t(profile_); ++i) {
+      S along(0);
+      for (std::size_t j = 0; j <= std::size_t(lead_); ++j) along = along + chebyshev(j)(y) * S(coefficients_[k++]);
+      sum = sum + chebyshev(i)(x) * along;
+    }
+    return other_ ? sum + other_->offset(theta, radius_mm) : sum;
+  }
   [[nodiscard]] const CorrectionResidual& residual() const { return residual_; }
 
  private:
-  [[nodiscard]] double top(double r, double* slope) const;
+  /// T_k, k <= 6.
+  static const modification::SmoothCurve& chebyshev(std::size_t k);
   [[nodiscard]] double profile_at(double theta, double radius_mm) const;  ///< 0 at the fillet line, 1 at the tip
   void fit_top(std::span<const FlankDeviation> points, int top_row);
   void fit_series(std::span<const FlankDeviation> points);
@@ -99,7 +114,7 @@ class FlankCorrection {
   void products_at(double theta, double radius_mm, Eigen::Ref<Eigen::RowVectorXd> row) const;
   double theta_t_ = 0;
   double s_mid_ = 0, s_half_ = 1, r_mid_ = 0, r_half_ = 1;
-  std::array<double, 4> top_{};  ///< theta at the tip, a cubic in the mapped radius
+  modification::SmoothCurve top_;  ///< theta at the tip over the mapped radius, a cubic
   int profile_ = 0, lead_ = 0;
   std::vector<double> coefficients_;  ///< (profile + 1) x (lead + 1), row-major, mm; of the offset
   CorrectionResidual residual_;

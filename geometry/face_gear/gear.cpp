@@ -5,13 +5,16 @@
 #include <limits>
 
 #include "geometry/base/angle.h"
+#include "geometry/face_gear/flank_field.h"
 #include "geometry/face_gear/inverse.h"
+#include "geometry/face_gear/space_sheet.h"
 #include "geometry/face_gear/swept_solid.h"
 
 namespace toothpath::face_gear {
 namespace {
 
 constexpr double kLeastShaftAngleDeg = 60, kMostShaftAngleDeg = 120;
+constexpr double kMostTurned = 0.1;  // rad: of a normal by modifications; beyond it amounts are no small offsets
 constexpr int kLeastTeeth = 4, kMostShaperTeeth = 1000, kMostTeeth = 10000;
 
 /// Collects the refusals of one gear.
@@ -35,11 +38,13 @@ class Inspection {
 
   void numbers();
   void zone_numbers();
+  void modified_zones();
   void shaper(std::size_t zone);
   void land_over_zone(std::size_t zone, const FaceGearRing& r);
   void swept_flank(std::size_t zone, const FaceGearRing& r);
   void ring(std::size_t zone, const FaceGearRing& r, std::vector<std::string>& warnings);
   void groove(const std::vector<FaceGearRing>& rings, std::vector<std::string>& warnings);
+  void modify(std::size_t zone, const FaceGearParameters& gear, FaceGearRing& r, std::vector<std::string>& warnings);
 
   std::vector<FaceGearRefusal> refusals;
 
@@ -102,6 +107,13 @@ void Inspection::zone_numbers() {
              "inner_radius = {:.6g} mm lies inside zone {}, which ends at {:.6g} mm: zones go outwards without overlap",
              z.inner_radius_mm, k - 1, zones[k - 1].outer_radius_mm);
   }
+}
+
+void Inspection::modified_zones() {
+  for (std::size_t k = 0; k < gear_.modifications.size(); ++k)
+    if (const auto zone = gear_.modifications[k].zone; zone && (*zone < 0 || *zone >= int(gear_.zones.size())))
+      refuse(fmt::format("modification[{}].zone", k), "zone = {} is not below {}, the number of zones", *zone,
+             gear_.zones.size());
 }
 
 void Inspection::shaper(std::size_t zone) {
@@ -211,6 +223,36 @@ void Inspection::swept_flank(std::size_t k, const FaceGearRing& r) {
     }
 }
 
+/// Gives the ring its modification, and judges what it makes of the flanks.
+void Inspection::modify(std::size_t k, const FaceGearParameters& gear, FaceGearRing& r,
+                        std::vector<std::string>& warnings) {
+  auto made = ring_modification(gear, r.surface, static_cast<int>(k));
+  if (auto* refusal = made.refused()) {
+    refusals.push_back(std::move(*refusal));
+    return;
+  }
+  r.modification = *made;
+  if (!r.modification) return;
+  r.form = std::make_shared<const ModifiedForm>(modified_form(gear, r));
+  const ModifiedForm& form = *r.form;
+  if (!(form.turned_rad.value <= kMostTurned))
+    refuse("modification",
+           "zone {}: the modifications turn the normal of flank {:+d} by {:.4f} rad at radius {:.4f} mm, height {:.4f} "
+           "mm, limit {:g}: a longer length or transition, or less amount, would do",
+           k, form.turned_rad.side, form.turned_rad.value, form.turned_rad.radius_mm, form.turned_rad.height_mm,
+           kMostTurned);
+  if (!(form.land_mm.value > 0))
+    refuse("modification",
+           "zone {}: the modifications leave a top land of {:.4f} mm at radius {:.4f} mm (plain {:.4f} mm), limit 0: "
+           "the tooth is pointed",
+           k, form.land_mm.value, form.land_mm.radius_mm, form.plain_land_mm);
+  else if (form.land_mm.value < r.limits.practical_land_mm && form.plain_land_mm >= r.limits.practical_land_mm)
+    warnings.push_back(
+        fmt::format("zone {}: the modifications leave a top land of {:.4g} mm at radius {:.4f} mm, below {:.4g} mm; "
+                    "the plain tooth has {:.4g} mm",
+                    k, form.land_mm.value, form.land_mm.radius_mm, r.limits.practical_land_mm, form.plain_land_mm));
+}
+
 double mid_groove(const std::vector<FaceGearRing>& rings) {
   return 0.5 * (rings[0].zone.outer_radius_mm + rings[1].zone.inner_radius_mm);
 }
@@ -269,6 +311,7 @@ Expected<FaceGear, std::vector<FaceGearRefusal>> FaceGear::make(const FaceGearPa
   Inspection inspection(parameters);
   inspection.numbers();
   inspection.zone_numbers();
+  inspection.modified_zones();
   if (!inspection.refusals.empty()) return std::move(inspection.refusals);
   for (std::size_t k = 0; k < parameters.zones.size(); ++k) inspection.shaper(k);
   if (!inspection.refusals.empty()) return std::move(inspection.refusals);
@@ -280,14 +323,19 @@ Expected<FaceGear, std::vector<FaceGearRefusal>> FaceGear::make(const FaceGearPa
         make_surface<double>(parameters, parameters.zones.front().helix_angle_rad).L_p;
   for (const auto& zone : gear.parameters_.zones) {
     const auto surface = make_surface<double>(gear.parameters_, zone.helix_angle_rad);
-    gear.rings_.push_back(
-        {zone, surface, zone_limits(surface, parameters.module_mm, parameters.least_land_mm), nullptr});
+    gear.rings_.push_back({zone, surface, zone_limits(surface, parameters.module_mm, parameters.least_land_mm), nullptr,
+                           nullptr, nullptr});
     inspection.ring(gear.rings_.size() - 1, gear.rings_.back(), gear.warnings_);
     if (inspection.refusals.empty()) inspection.swept_flank(gear.rings_.size() - 1, gear.rings_.back());
   }
   inspection.groove(gear.rings_, gear.warnings_);
+  if (inspection.refusals.empty())
+    for (std::size_t k = 0; k < gear.rings_.size(); ++k)
+      inspection.modify(k, gear.parameters_, gear.rings_[k], gear.warnings_);
   if (!inspection.refusals.empty()) return std::move(inspection.refusals);
   warn_sharp_fillet(parameters, gear.rings_, gear.warnings_);
+  for (const auto& ring : gear.rings_)
+    gear.drawn_.push_back(std::make_shared<const SpaceSheet>(gear.parameters_, ring));
   return gear;
 }
 

@@ -12,14 +12,27 @@
 namespace toothpath::face_gear {
 
 struct RingCorrection;
+struct RingModification;
+struct ModifiedForm;
+class SpaceSheet;
 
 /// One ring with everything precomputed.
 struct FaceGearRing {
   FaceGearZone zone;
   FaceGearSurface<double> surface;
   ZoneLimits limits;
+  std::shared_ptr<const RingModification> modification = nullptr;  ///< of the nominal flanks; none: plain
+  std::shared_ptr<const ModifiedForm> form = nullptr;              ///< what it comes to; with a modification
   std::shared_ptr<const RingCorrection> correction =
       nullptr;  ///< flanks to aim at instead of the nominal ones; none: the nominal
+  /// Are the flanks to aim at other than the plain ones?
+  [[nodiscard]] bool displaced() const { return modification != nullptr || correction != nullptr; }
+  /// The ring of the drawing, without a correction.
+  [[nodiscard]] FaceGearRing drawn() const {
+    FaceGearRing ring = *this;
+    ring.correction = nullptr;
+    return ring;
+  }
 };
 
 /// A refused parameter: which key of the job it belongs to, so that the reader can add file, line and column.
@@ -39,6 +52,9 @@ class FaceGear {
   [[nodiscard]] double pitch() const { return rings_.front().surface.pitch; }
   [[nodiscard]] double inner_radius() const { return rings_.front().zone.inner_radius_mm; }
   [[nodiscard]] double outer_radius() const { return rings_.back().zone.outer_radius_mm; }
+  /// The tooth spaces of the drawing, modified flanks and all, without a correction: what meshes, inspection points and
+  /// contact are made of.
+  [[nodiscard]] const SpaceSheet& drawn(std::size_t zone) const { return *drawn_[zone]; }
   /// The same gear with other flanks to aim at, one correction a ring. Planners and checks then take the corrected
   /// flanks for the finished surface; limits, blank, meshes and inspection points stay those of the nominal gear.
   [[nodiscard]] FaceGear corrected(const std::vector<std::shared_ptr<const RingCorrection>>& corrections) const;
@@ -56,6 +72,7 @@ class FaceGear {
   FaceGear() = default;
   FaceGearParameters parameters_;
   std::vector<FaceGearRing> rings_;
+  std::vector<std::shared_ptr<const SpaceSheet>> drawn_;
   std::vector<std::string> warnings_;
 };
 

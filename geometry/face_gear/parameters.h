@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/base/result.h"
+#include "geometry/modification/modification.h"
 
 namespace toothpath::face_gear {
 
@@ -37,6 +38,7 @@ struct FaceGearParameters {
   double allowance_top_mm = 0;                ///< stock above the tip surface
   std::vector<FaceGearZone> zones;            ///< from the inside outwards, not overlapping
   std::optional<double> least_land_mm = {};   ///< top land that the tooth should have at least; none: 0.2 m
+  std::vector<modification::Modification> modifications = {};  ///< of the flanks
 };
 
 }  // namespace toothpath::face_gear

@@ -83,8 +83,9 @@ Result<ScatteredFit> FlankCorrection::fit_scattered(std::span<const ScatteredDev
   if (levels < kLeastLevels || places < kLeastPlaces)
     return fail("the points lie at {} heights and {} radii, at least {} and {} are needed", levels, places,
                 kLeastLevels, kLeastPlaces);
-  f.profile_ = std::clamp(most.profile, 0, levels - 2);
-  f.lead_ = std::clamp(most.lead, 0, places - 3);
+  constexpr int kMost = int(modification::SmoothCurve::kMostTerms) - 1;
+  f.profile_ = std::clamp(std::min(most.profile, kMost), 0, levels - 2);
+  f.lead_ = std::clamp(std::min(most.lead, kMost), 0, places - 3);
   return f.fit_teeth(points, Spread(profile).low, Spread(profile).high);
 }
 

@@ -11,12 +11,26 @@ namespace {
 
 using Dual2 = Dual<double, 2>;
 
+constexpr int kNewtonSteps = 20;
+
 bool is_flank(SpacePiece piece) { return piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus; }
 int side_of(SpacePiece piece) { return piece == SpacePiece::flank_plus || piece == SpacePiece::fillet_plus ? 1 : -1; }
 
 PatchPoint from_dual(const Vec3T<Dual2>& p, const Vec3T<Dual2>& n) {
   return {value(p), value(n), derivative(p, 0), derivative(p, 1), derivative(n, 0), derivative(n, 1)};
 }
+
+SpacePiece flank_piece(int side) { return side > 0 ? SpacePiece::flank_plus : SpacePiece::flank_minus; }
+SpacePiece fillet_piece(int side) { return side > 0 ? SpacePiece::fillet_plus : SpacePiece::fillet_minus; }
+
+/// Radius of a point, and how fast it changes with the two parameters.
+struct Radius {
+  double r, u, v;
+  explicit Radius(const PatchPoint& q)
+      : r(std::hypot(q.p.x(), q.p.y())),
+        u((q.p.x() * q.pu.x() + q.p.y() * q.pu.y()) / r),
+        v((q.p.x() * q.pv.x() + q.p.y() * q.pv.y()) / r) {}
+};
 
 PatchPoint turned(const PatchPoint& q, const FaceGearSurface<double>::Turn& turn) {
   return {turn(q.p), turn(q.n), turn(q.pu), turn(q.pv), turn(q.nu), turn(q.nv)};
@@ -36,15 +50,18 @@ const char* to_string(SpacePiece piece) {
 }
 
 SpaceSheet::SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring)
-    : ring_(ring), dual_(make_surface<Dual2>(gear, ring.zone.helix_angle_rad)), to_minus_(ring.surface.pitch) {
-  if (!ring_.correction) return;
+    : ring_(ring),
+      dual_(make_surface<Dual2>(gear, ring.zone.helix_angle_rad)),
+      second_(make_surface<Second>(gear, ring.zone.helix_angle_rad)),
+      to_minus_(ring.surface.pitch) {
+  if (!ring_.displaced()) return;
   const auto& f = ring_.surface;
   const auto section = [&](double r) { return std::sqrt(std::max(0.0, r * r - f.E * f.E)) / f.Sg; };
   const double margin = 6 * f.shaper.m_t + std::abs(f.Cg) * f.shaper.r_a;
   for (const int side : {1, -1})
-    blends_[side > 0 ? 0 : 1] = std::make_shared<FilletBlend>(f, dual_, ring_.correction->side(side), side,
-                                                              section(ring.zone.inner_radius_mm) - margin,
-                                                              section(ring.zone.outer_radius_mm) + margin);
+    blends_[side > 0 ? 0 : 1] =
+        std::make_shared<FilletBlend>(f, dual_, field(side), side, section(ring.zone.inner_radius_mm) - margin,
+                                      section(ring.zone.outer_radius_mm) + margin);
 }
 
 template <typename S>
@@ -58,7 +75,7 @@ SurfacePointT<S> SpaceSheet::root_point(const FaceGearSurface<S>& f, const S& fr
   return {FaceGearSurface<S>::turned(m.p, turn), FaceGearSurface<S>::turned(m.n, turn)};
 }
 
-std::optional<PatchPoint> SpaceSheet::nominal(SpacePiece piece, double u, double v) const {
+std::optional<PatchPoint> SpaceSheet::plain(SpacePiece piece, double u, double v) const {
   const auto& f = ring_.surface;
   const int s = side_of(piece);
   PatchPoint q;
@@ -97,88 +114,145 @@ std::optional<PatchPoint> SpaceSheet::nominal(SpacePiece piece, double u, double
   return q;
 }
 
-void SpaceSheet::displace(SpacePiece piece, double u, double v, PatchPoint& q) const {
+FlankField SpaceSheet::field(int side) const {
+  FlankField out;
+  if (ring_.modification && !ring_.modification->side(side).empty()) out.drawn = &ring_.modification->side(side);
+  if (ring_.correction) out.measured = &ring_.correction->side(side);
+  return out;
+}
+
+template <typename S>
+std::optional<SurfacePointT<S>> SpaceSheet::moved(const FaceGearSurface<S>& f, SpacePiece piece, const S& u,
+                                                  const S& v) const {
   const int s = side_of(piece);
-  double c = 0, c_u = 0, c_v = 0;
   if (is_flank(piece)) {
-    const double r = std::hypot(q.p.x(), q.p.y());
-    const auto offset = ring_.correction->side(s).at(u, r);
-    c = offset.value;
-    c_u = offset.d_theta + offset.d_radius * (q.p.x() * q.pu.x() + q.p.y() * q.pu.y()) / r;
-    c_v = offset.d_radius * (q.p.x() * q.pv.x() + q.p.y() * q.pv.y()) / r;
-  } else if (piece != SpacePiece::root) {
-    const auto offset = blends_[s > 0 ? 0 : 1]->at(u, v);
-    c = offset.value;
-    c_u = offset.d_A;
-    c_v = offset.d_Z;
-  } else {
-    return;
+    const auto at = f.flank(s, u, v);
+    return SurfacePointT<S>{at.p + at.n * field(s).offset(f, u, at.p), at.n};
   }
-  const Vec3 n = q.n;
-  q.p += c * n;
-  q.pu += c_u * n + c * q.nu;
-  q.pv += c_v * n + c * q.nv;
-  const Vec3 normal = q.pu.cross(q.pv);
-  const double size = normal.norm();
-  if (size > 0) q.n = normal * ((normal.dot(n) > 0 ? 1 : -1) / size);
+  const auto at = f.fillet(s, u, v);
+  if (!at.defined) return {};
+  return SurfacePointT<S>{at.p + at.n * blend(s)->at(u, v), at.n};
+}
+
+std::optional<PatchPoint> SpaceSheet::displaced(SpacePiece piece, double u, double v, bool curved) const {
+  if (is_flank(piece) && (!(std::abs(v) < 1.4) || !(ring_.surface.flank_J(side_of(piece), u, v) > 0))) return {};
+  PatchPoint q;
+  const auto normal = [&](const Vec3& plain) {
+    const Vec3 n = q.pu.cross(q.pv);
+    const double size = n.norm();
+    q.n = size > 0 ? Vec3(n * ((n.dot(plain) > 0 ? 1 : -1) / size)) : plain;
+    return size;
+  };
+  if (!curved) {
+    const auto at = moved<Dual2>(dual_, piece, Dual2::variable(u, 0), Dual2::variable(v, 1));
+    if (!at) return {};
+    q.p = value(at->p);
+    q.pu = derivative(at->p, 0);
+    q.pv = derivative(at->p, 1);
+    normal(value(at->n));
+    return q;
+  }
+  const auto variable = [](double x, int k) {
+    Second s;
+    s.v = Dual2::variable(x, k);
+    s.d[std::size_t(k)] = Dual2(1);
+    return s;
+  };
+  const auto at = moved<Second>(second_, piece, variable(u, 0), variable(v, 1));
+  if (!at) return {};
+  const auto of = [&](const auto& take) { return Vec3(take(at->p[0]), take(at->p[1]), take(at->p[2])); };
+  q.p = of([](const Second& x) { return x.v.v; });
+  q.pu = of([](const Second& x) { return x.v.d[0]; });
+  q.pv = of([](const Second& x) { return x.v.d[1]; });
+  const Vec3 uu = of([](const Second&x) { return x.d[0].d[0]; }), uv = of([](const Second&x) { return x.d[0].d[1]; }),
+             vv = of([](const Second&x) { return x.d[1].d[1]; });
+  const double size = normal(Vec3(at->n[0].v.v, at->n[1].v.v, at->n[2].v.v));
+  if (!(size > 0)) return q;
+  const double sign = q.n.dot(q.pu.cross(q.pv)) > 0 ? 1 : -1;
+  const auto tangential = [&](const Vec3& change) { return Vec3((change - q.n * q.n.dot(change)) * (sign / size)); };
+  q.nu = tangential(uu.cross(q.pv) + q.pu.cross(uv));
+  q.nv = tangential(uv.cross(q.pv) + q.pu.cross(vv));
+  return q;
 }
 
 std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) const {
-  auto q = nominal(piece, u, v);
+  const bool plain_here = !ring_.displaced() || piece == SpacePiece::root;
+  const auto q = plain_here ? plain(piece, u, v) : displaced(piece, u, v, true);
   if (!q || piece == SpacePiece::root) return q;
-  if (ring_.correction) {
-    displace(piece, u, v, *q);
-    // Second derivatives of the field count where a ball hardly fits the fillet: the normals' derivatives by
-    // differences of the normals.
-    const double h = 1e-5, g = is_flank(piece) ? 1e-5 : 1e-3;  // rad; rad or mm
-    const auto normal = [&](double a, double b) -> std::optional<Vec3> {
-      auto near = nominal(piece, a, b);
-      if (!near) return {};
-      displace(piece, a, b, *near);
-      return near->n;
-    };
-    const auto u0 = normal(u - h, v), u1 = normal(u + h, v), v0 = normal(u, v - g), v1 = normal(u, v + g);
-    if (u0 && u1) q->nu = (*u1 - *u0) / (2 * h);
-    if (v0 && v1) q->nv = (*v1 - *v0) / (2 * g);
-  }
   return side_of(piece) > 0 ? q : turned(*q, to_minus_);
 }
 
-std::optional<TipPlace> SpaceSheet::tip(int side, double r, const std::optional<FlankCoordinates>& start) const {
+std::optional<FlankCoordinates> SpaceSheet::invert(int side, double r, double z,
+                                                   const std::optional<FlankCoordinates>& start) const {
   const auto& f = ring_.surface;
-  const double z = f.z_tip(r);
   auto at = invert_flank(f, side, r, z, start);
-  if (!at) return {};
-  TipPlace place{*at, flank_azimuth(f, side, *at)};
-  if (!ring_.correction) return place;
-  const Vec3 before = f.flank(side, at->theta, at->B).p;
-  const auto piece = side > 0 ? SpacePiece::flank_plus : SpacePiece::flank_minus;
-  for (int k = 0; k < 20; ++k) {
-    auto q = nominal(piece, place.at.theta, place.at.B);
+  if (!at || field(side).none()) return at;
+  for (int k = 0; k < kNewtonSteps; ++k) {
+    const auto q = displaced(flank_piece(side), at->theta, at->B, false);
     if (!q) return {};
-    displace(piece, place.at.theta, place.at.B, *q);
-    const double r_now = std::hypot(q->p.x(), q->p.y());
-    const double dr = r - r_now, dz = z - q->p.z();
+    const Radius now(*q);
+    const double dr = r - now.r, dz = z - q->p.z();
     if (std::abs(dr) + std::abs(dz) < 1e-11 * r) {
-      place.azimuth +=
-          std::atan2(before.x() * q->p.y() - before.y() * q->p.x(), before.x() * q->p.x() + before.y() * q->p.y());
-      return place;
+      at->J = f.flank_J(side, at->theta, at->B);
+      return at;
     }
-    const double ru = (q->p.x() * q->pu.x() + q->p.y() * q->pu.y()) / r_now,
-                 rv = (q->p.x() * q->pv.x() + q->p.y() * q->pv.y()) / r_now;
-    const double zu = q->pu.z(), zv = q->pv.z(), det = ru * zv - rv * zu;
+    const double zu = q->pu.z(), zv = q->pv.z(), det = now.u * zv - now.v * zu;
     if (det == 0) return {};
-    place.at.theta += (dr * zv - dz * rv) / det;
-    place.at.B += (dz * ru - dr * zu) / det;
+    at->theta += (dr * zv - dz * now.v) / det;
+    at->B += (dz * now.u - dr * zu) / det;
   }
   return {};
 }
 
+std::optional<TipPlace> SpaceSheet::tip(int side, double r, const std::optional<FlankCoordinates>& start) const {
+  const auto& f = ring_.surface;
+  const auto at = invert(side, r, f.z_tip(r), start);
+  if (!at) return {};
+  TipPlace place{*at, flank_azimuth(f, side, *at)};
+  if (field(side).none()) return place;
+  // flank_azimuth follows the plain flank without a jump; the displaced point lies a little beside it.
+  const Vec3 before = f.flank(side, at->theta, at->B).p, now = flank(side, at->theta, at->B).p;
+  place.azimuth += std::atan2(before.x() * now.y() - before.y() * now.x(), before.x() * now.x() + before.y() * now.y());
+  return place;
+}
+
+SurfacePointT<double> SpaceSheet::flank(int side, double theta, double B) const {
+  if (!field(side).none())
+    if (const auto q = displaced(flank_piece(side), theta, B, false)) return {q->p, q->n};
+  return ring_.surface.flank(side, theta, B);
+}
+
+Vec3 SpaceSheet::fillet(int side, double A, double Z) const {
+  const auto at = ring_.surface.fillet(side, A, Z);
+  return field(side).none() ? at.p : Vec3(at.p + at.n * blend(side)->at(A, Z));
+}
+
+std::optional<double> SpaceSheet::v_at_radius(SpacePiece piece, double u, double r, double v) const {
+  for (int k = 0; k < kNewtonSteps; ++k) {
+    const auto q = displaced(piece, u, v, false);
+    if (!q) return {};
+    const Radius now(*q);
+    if (std::abs(r - now.r) < 1e-11 * r) return v;
+    if (now.v == 0) return {};
+    v += (r - now.r) / now.v;
+  }
+  return {};
+}
+
+std::optional<double> SpaceSheet::B_at_radius(int side, double theta, double r, double start_B) const {
+  const auto B = flank_B_at_radius(ring_.surface, side, theta, r, start_B);
+  return !B || field(side).none() ? B : v_at_radius(flank_piece(side), theta, r, *B);
+}
+
+std::optional<double> SpaceSheet::Z_at_radius(int side, double A, double r, double start_Z) const {
+  const auto Z = fillet_Z_at_radius(ring_.surface, side, A, r, start_Z);
+  return !Z || field(side).none() ? Z : v_at_radius(fillet_piece(side), A, r, *Z);
+}
+
 std::optional<PatchPoint> SpaceSheet::point(SpacePiece piece, double u, double v) const {
-  if (ring_.correction) {
-    auto q = nominal(piece, u, v);
+  if (ring_.displaced()) {
+    const auto q = piece == SpacePiece::root ? plain(piece, u, v) : displaced(piece, u, v, false);
     if (!q || piece == SpacePiece::root) return q;
-    displace(piece, u, v, *q);
     return side_of(piece) > 0 ? q : turned(*q, to_minus_);
   }
   const auto& f = ring_.surface;
@@ -223,7 +297,7 @@ std::optional<PatchFoot> SpaceSheet::nominal_flank_foot(SpacePiece piece, const 
 }
 
 std::optional<PatchFoot> SpaceSheet::foot(SpacePiece piece, const Vec3& c, double u, double v) const {
-  if (is_flank(piece) && !ring_.correction && std::abs(v) < 1.4)
+  if (is_flank(piece) && !ring_.displaced() && std::abs(v) < 1.4)
     if (auto f = nominal_flank_foot(piece, c, u, v)) return f;
   PatchFoot f;
   f.u = u;

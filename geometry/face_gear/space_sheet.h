@@ -40,9 +40,8 @@ struct TipPlace {
 
 /// Parameters: flanks (theta, B), fillets (A, Z), root (fraction from the plus to the minus edge, Z).
 ///
-/// A ring with a correction gives the corrected flanks: points displaced along the nominal normals, with their own
-/// normals; the fillets carry the displacement on and let it fade. Derivatives of the normals are then differences of
-/// the normals (1e-8 relative): they serve the steps of Newton and the step-over, not a place.
+/// A ring with a modification or a correction gives the displaced flanks: points moved along the plain normals, with
+/// their own exact normals and curvatures; the fillets carry the displacement on and let it fade.
 class SpaceSheet {
  public:
   explicit SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring);
@@ -63,6 +62,21 @@ class SpaceSheet {
   [[nodiscard]] std::optional<TipPlace> tip(int side, double r,
                                             const std::optional<FlankCoordinates>& start = {}) const;
 
+  /// Places of tooth 0 on both sides, as the functions of the plain surface: flank and fillet of a side, parameters of
+  /// the flank's point at (r, z), B at constant theta and Z at constant A for a radius. On plain rings those functions
+  /// themselves; on displaced ones Newton from them, |radius - r| <= 1e-11 r.
+  [[nodiscard]] SurfacePointT<double> flank(int side, double theta, double B) const;
+  [[nodiscard]] Vec3 fillet(int side, double A, double Z) const;
+  [[nodiscard]] std::optional<FlankCoordinates> invert(int side, double r, double z,
+                                                       const std::optional<FlankCoordinates>& start = {}) const;
+  [[nodiscard]] std::optional<double> B_at_radius(int side, double theta, double r, double start_B) const;
+  [[nodiscard]] std::optional<double> Z_at_radius(int side, double A, double r, double start_Z) const;
+
+  /// What displaces a flank; none where it is plain.
+  [[nodiscard]] FlankField field(int side) const;
+  /// The same of a fillet; null where it is plain.
+  [[nodiscard]] const FilletBlend* blend(int side) const { return blends_[side > 0 ? 0 : 1].get(); }
+
   /// Normal curvature in the tangential direction of `along`, convex positive, 1/mm.
   static double normal_curvature(const PatchPoint& at, const Vec3& along);
 
@@ -72,18 +86,25 @@ class SpaceSheet {
 
  private:
   using Dual2 = Dual<double, 2>;
+  using Second = Dual<Dual2, 2>;  // second derivatives, too
   template <typename S>
   [[nodiscard]] SurfacePointT<S> root_point(const FaceGearSurface<S>& f, const S& fraction, const S& Z) const;
-  /// The nominal piece before it is turned to its tooth.
-  [[nodiscard]] std::optional<PatchPoint> nominal(SpacePiece piece, double u, double v) const;
+  /// The plain piece before it is turned to its tooth.
+  [[nodiscard]] std::optional<PatchPoint> plain(SpacePiece piece, double u, double v) const;
+  /// A displaced flank or fillet, likewise; with curvatures or without nu, nv.
+  [[nodiscard]] std::optional<PatchPoint> displaced(SpacePiece piece, double u, double v, bool curved) const;
+  template <typename S>
+  [[nodiscard]] std::optional<SurfacePointT<S>> moved(const FaceGearSurface<S>& f, SpacePiece piece, const S& u,
+                                                      const S& v) const;
+  /// Newton in one parameter of a displaced piece to radius r, the other one fixed.
+  [[nodiscard]] std::optional<double> v_at_radius(SpacePiece piece, double u, double r, double v) const;
   [[nodiscard]] std::optional<PatchFoot> nominal_flank_foot(SpacePiece piece, const Vec3& c, double u, double v) const;
-  /// Moves a point by the correction of its piece.
-  void displace(SpacePiece piece, double u, double v, PatchPoint& q) const;
 
   FaceGearRing ring_;
   FaceGearSurface<Dual2> dual_;
+  FaceGearSurface<Second> second_;
   FaceGearSurface<double>::Turn to_minus_;  ///< from the minus flank of tooth 0 to that of the space 0 | 1
-  std::array<std::shared_ptr<const FilletBlend>, 2> blends_;  ///< sides +1 and -1; empty: nominal
+  std::array<std::shared_ptr<const FilletBlend>, 2> blends_;  ///< sides +1 and -1; empty: plain
 };
 
 }  // namespace toothpath::face_gear

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "geometry/face_gear/inverse.h"
+#include "geometry/face_gear/space_sheet.h"
 
 namespace toothpath::inspection {
 namespace {
@@ -20,10 +20,11 @@ double inside(double from, double to, double margin, int k, int n) {
 }
 
 /// The points of one column, from the fillet to the tip.
-Result<std::vector<InspectionPoint>> column_points(const face_gear::FaceGearSurface<double>& f, int side, double r,
+Result<std::vector<InspectionPoint>> column_points(const face_gear::SpaceSheet& sheet, int side, double r,
                                                    const InspectionOptions& options) {
+  const auto& f = sheet.surface();
   const double z_tip = f.z_tip(r), theta_t = f.shaper.theta_t;
-  const auto tip = face_gear::invert_flank(f, side, r, z_tip);
+  const auto tip = sheet.invert(side, r, z_tip);
   if (!tip)
     return fail("flank {:+d} does not reach the tip surface at radius {:.4f} mm (height {:.4f} mm)", side, r, z_tip);
   const double theta_top = std::max(tip->theta, 0.0);
@@ -35,11 +36,11 @@ Result<std::vector<InspectionPoint>> column_points(const face_gear::FaceGearSurf
     const int steps = std::max(1, int(std::ceil(std::abs(goal - from) / 0.05)));
     for (int k = 1; k <= steps; ++k) {
       theta = k == steps ? goal : from + (goal - from) * double(k) / double(steps);
-      const auto next = face_gear::flank_B_at_radius(f, side, theta, r, B);
+      const auto next = sheet.B_at_radius(side, theta, r, B);
       if (!next) return fail("flank {:+d} does not reach its fillet at radius {:.4f} mm: undercut", side, r);
       B = *next;
     }
-    const auto at = f.flank(side, theta, B);
+    const auto at = sheet.flank(side, theta, B);
     InspectionPoint& point = points[std::size_t(row)];
     point.side = side;
     point.row = row;
@@ -69,7 +70,7 @@ Result<std::vector<InspectionPoint>> inspection_grid(const face_gear::FaceGear& 
       for (int column = 0; column < options.columns; ++column) {
         const double r =
             inside(ring.zone.inner_radius_mm, ring.zone.outer_radius_mm, options.margin, column, options.columns);
-        auto points = column_points(ring.surface, side, r, options);
+        auto points = column_points(gear.drawn(zone), side, r, options);
         if (!points) return points.error();
         for (InspectionPoint& point : *points) {
           point.zone = int(zone);

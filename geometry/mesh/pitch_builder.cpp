@@ -75,12 +75,11 @@ PitchBuilder::Row PitchBuilder::row_below(const Row& profile, double z) {
   return add_row(std::move(points), &profile, z);
 }
 
-Result<PitchBuilder::RingRows> PitchBuilder::add_ring(const face_gear::FaceGearRing& ring,
-                                                      const std::vector<double>& radii) {
+Result<PitchBuilder::RingRows> PitchBuilder::add_ring(std::size_t zone, const std::vector<double>& radii) {
   RingRows rows;
   std::optional<ToothSection> near;
   const auto section_at = [&](double r) {
-    return ToothSection::at(ring.surface, out_.teeth, r, near ? &*near : nullptr);
+    return ToothSection::at(gear_.drawn(zone), out_.teeth, r, near ? &*near : nullptr);
   };
   for (std::size_t i = 0; i < radii.size(); ++i) {
     auto section = section_at(radii[i]);
@@ -182,7 +181,7 @@ Status PitchBuilder::build() {
   const auto& rings = gear_.rings();
   const double m = gear_.parameters().module_mm;
   for (std::size_t k = 0; k < rings.size(); ++k) {
-    auto rows = add_ring(rings[k], grid_.radii[k]);
+    auto rows = add_ring(k, grid_.radii[k]);
     if (!rows) return rows.error();
     rings_.push_back(std::move(*rows));
     for (const Row* end : {&rings_.back().rows.front(), &rings_.back().rows.back()}) {
@@ -254,7 +253,7 @@ Result<std::array<double, kPatchCount>> PitchBuilder::measure_sag(int n) const {
     for (std::size_t i = 0; i + 1 < radii.size(); ++i)
       for (int a = 0; a < n + (i + 2 == radii.size() ? 1 : 0); ++a) {
         const double r = a == n ? radii[i + 1] : radii[i] + (radii[i + 1] - radii[i]) * double(a) / double(n);
-        auto section = ToothSection::at(gear_.rings()[k].surface, out_.teeth, r, near ? &*near : nullptr);
+        auto section = ToothSection::at(gear_.drawn(k), out_.teeth, r, near ? &*near : nullptr);
         if (!section) return section.error();
         near = *section;
         for (int b = 0; b < n; ++b) {

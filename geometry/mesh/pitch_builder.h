@@ -41,7 +41,7 @@ class PitchBuilder {
   };
 
   Result<std::vector<SectionPoint>> exact_row(const ToothSection& section, double shift) const;
-  Result<RingRows> add_ring(const face_gear::FaceGearRing& ring, const std::vector<double>& radii);
+  Result<RingRows> add_ring(std::size_t zone, const std::vector<double>& radii);
   Row add_row(std::vector<Vec3> points, const Row* shared = nullptr, double shared_z = 0);
   Row row_below(const Row& profile, double z);
   void add_triangle(std::int32_t a, std::int32_t b, std::int32_t c, const TriangleTag& tag);

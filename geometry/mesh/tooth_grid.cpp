@@ -75,14 +75,15 @@ std::vector<GridColumn> grid_columns(const ToothGrid& grid) {
 Result<GridPlanner> GridPlanner::probe(const face_gear::FaceGear& gear) {
   GridPlanner planner;
   for (auto& b : planner.bend_across_) b.assign(kProbes, 0.0);
-  for (const face_gear::FaceGearRing& ring : gear.rings()) {
+  for (std::size_t zone = 0; zone < gear.rings().size(); ++zone) {
+    const face_gear::FaceGearRing& ring = gear.rings()[zone];
     const double r_in = ring.zone.inner_radius_mm, r_out = ring.zone.outer_radius_mm;
     planner.span_.push_back({r_in, r_out});
     std::array<Lines, kSegmentCount> lines;
     std::optional<ToothSection> near;
     for (std::size_t i = 0; i < kProbes; ++i) {
       const double r = i + 1 == kProbes ? r_out : radius_at({r_in, r_out}, double(i) / double(kProbes - 1));
-      auto section = ToothSection::at(ring.surface, gear.parameters().teeth, r, near ? &*near : nullptr);
+      auto section = ToothSection::at(gear.drawn(zone), gear.parameters().teeth, r, near ? &*near : nullptr);
       if (!section) return section.error();
       near = *section;
       for (std::size_t s = 0; s < kSegmentCount; ++s) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/face_gear/space_sheet.h"
 #include "geometry/mesh/pitch_builder.h"
 
 namespace toothpath::mesh {
@@ -129,6 +130,16 @@ std::optional<face_gear::SurfacePointT<double>> exact_patch_point(const face_gea
     return face_gear::SurfacePointT<double>{turned_by_pitches(p, s < 0 ? 1 : 0, teeth),
                                             turned_by_pitches(n, s < 0 ? 1 : 0, teeth)};
   };
+  if (gear.rings()[std::size_t(zone)].modification && s != 0) {
+    using Piece = face_gear::SpacePiece;
+    const bool flank = patch == Patch::flank_plus || patch == Patch::flank_minus;
+    const auto at = gear.drawn(std::size_t(zone))
+                        .point(flank ? (s > 0 ? Piece::flank_plus : Piece::flank_minus)
+                                     : (s > 0 ? Piece::fillet_plus : Piece::fillet_minus),
+                               uv.x(), uv.y());
+    if (!at) return {};
+    return face_gear::SurfacePointT<double>{at->p, at->n};
+  }
   switch (patch) {
     case Patch::flank_plus:
     case Patch::flank_minus: {

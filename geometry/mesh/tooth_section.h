@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "geometry/face_gear/surface.h"
+#include "geometry/face_gear/space_sheet.h"
 #include "geometry/mesh/tooth_mesh.h"
 
 namespace toothpath::mesh {
@@ -24,10 +24,10 @@ struct SectionPoint {
 
 class ToothSection {
  public:
-  /// Outline at radius r [mm] of one ring of a gear with `teeth` teeth. `near`: a section of the same ring close by,
-  /// from which the solution is continued. Refused where a flank does not reach the tip surface or its fillet, where
-  /// the fillets overlap and where the two flanks of a tooth have crossed below the tip surface.
-  static Result<ToothSection> at(const face_gear::FaceGearSurface<double>& surface, int teeth, double r,
+  /// Outline at radius r [mm] of one ring of a gear with `teeth` teeth; the sheet outlives it. `near`: a section of the
+  /// same ring close by, from which the solution is continued. Refused where a flank does not reach the tip surface or
+  /// its fillet, where the fillets overlap and where the two flanks of a tooth have crossed below the tip surface.
+  static Result<ToothSection> at(const face_gear::SpaceSheet& sheet, int teeth, double r,
                                  const ToothSection* near = nullptr);
 
   /// Point at `fraction` in [0, 1] of a segment, in the direction of growing azimuth. Both neighbours give the same
@@ -49,12 +49,12 @@ class ToothSection {
     double B_t = 0;                   ///< at theta_t
     double Z_t = 0, Z_e = 0;          ///< fillet at A_t and A_e
   };
-  static Result<Side> make_side(const face_gear::FaceGearSurface<double>& f, int s, double r, const Side* near);
+  static Result<Side> make_side(const face_gear::SpaceSheet& sheet, int s, double r, const Side* near);
   [[nodiscard]] Vec3 placed(const Vec3& p, int s) const { return s > 0 ? p : turned_by_pitches(p, 1, teeth_); }
   [[nodiscard]] std::optional<SectionPoint> flank_point(const Side& side, double from_tip) const;
   [[nodiscard]] std::optional<SectionPoint> fillet_point(const Side& side, double from_flank) const;
 
-  face_gear::FaceGearSurface<double> f_;
+  const face_gear::SpaceSheet* sheet_ = nullptr;
   int teeth_ = 0;
   double r_ = 0;
   std::array<Side, 2> sides_;                                  ///< +1, -1

@@ -6,15 +6,37 @@
 
 #include "geometry/face_gear/inverse.h"
 #include "geometry/face_gear/limits.h"
+#include "tests/support/modified_flank.h"
 
 namespace toothpath::test {
 namespace {
 constexpr double kPiHere = 3.14159265358979323846;
 const double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// Azimuth of the modified flank at radius r and height z: the plain place is moved until the modified point is there.
+double modified_azimuth(const face_gear::FaceGear& gear, int zone, int side, double r, double z,
+                        std::optional<face_gear::FlankCoordinates>& near) {
+  const auto& f = gear.rings().at(std::size_t(zone)).surface;
+  double r_plain = r, z_plain = z;
+  for (int k = 0; k < 8; ++k) {
+    near = face_gear::invert_flank(f, side, r_plain, z_plain, near);
+    if (!near || near->theta < 0) return kNan;
+    if (gear.parameters().modifications.empty()) return face_gear::flank_azimuth(f, side, *near);
+    const Vec3 p = modified_by_the_words<double>(f, gear.parameters(), zone, side, near->theta, near->B),
+               plain = f.flank(side, near->theta, near->B).p;
+    r_plain += r - std::hypot(p.x(), p.y());
+    z_plain += z - p.z();
+    if (k == 7)
+      return face_gear::flank_azimuth(f, side, *near) +
+             std::atan2(plain.x() * p.y() - plain.y() * p.x(), plain.x() * p.x() + plain.y() * p.y());
+  }
+  return kNan;
+}
 }  // namespace
 
 BruteForceContact::BruteForceContact(const face_gear::FaceGear& gear, int zone, int side, int pinion_teeth,
-                                     const contact::Misalignment& moved)
+                                     const contact::Misalignment& moved,
+                                     const std::vector<modification::Modification>& on_pinion)
     : side_(side), pinion_teeth_(pinion_teeth) {
   const face_gear::FaceGearRing& ring = gear.rings().at(std::size_t(zone));
   const auto& f = ring.surface;
@@ -34,8 +56,7 @@ BruteForceContact::BruteForceContact(const face_gear::FaceGear& gear, int zone, 
     std::optional<face_gear::FlankCoordinates> near;
     for (int k = 0; k < rows_; ++k) {
       const double z = low_.back() + (top_.back() - low_.back()) * k / (rows_ - 1);
-      near = face_gear::invert_flank(f, side, r, z, near);
-      azimuth_[std::size_t(c * rows_ + k)] = near && near->theta >= 0 ? face_gear::flank_azimuth(f, side, *near) : kNan;
+      azimuth_[std::size_t(c * rows_ + k)] = modified_azimuth(gear, zone, side, r, z, near);
     }
   }
 
@@ -47,15 +68,33 @@ BruteForceContact::BruteForceContact(const face_gear::FaceGear& gear, int zone, 
   const double shift = 0.5 * m_t * (f.shaper.teeth - pinion_teeth);
   const double Z_from = std::sqrt(r_in_ * r_in_ - 900) - 4, Z_to = r_out_ + 4;
   const int along = 900, high = 240;
+  const auto plain = [&](double R, double Z) {
+    const double roll = std::acos(std::min(1.0, r_b / R));
+    // Half the space grows outwards: on the pitch circle `thickness`, elsewhere plus the difference of the involute
+    // functions.
+    const double half = thickness + (std::tan(roll) - roll) - (std::tan(alpha) - alpha);
+    const double angle = side * half + twist * (Z - f.L0);
+    return Vec3(R * std::cos(angle), R * std::sin(angle), Z);
+  };
+  const auto section = [&](double r) {  // where the pitch line is at radius r
+    return (std::sqrt(r * r - f.E * f.E) + m_t * f.shaper.teeth / 2 * f.Cg) / f.Sg;
+  };
   for (int n = 0; n < along; ++n)
     for (int k = 0; k < high; ++k) {
       const double Z = Z_from + (Z_to - Z_from) * n / (along - 1), R = r_b + (r_a - r_b) * k / (high - 1);
-      const double roll = std::acos(std::min(1.0, r_b / R));
-      // Half the space grows outwards: on the pitch circle `thickness`, elsewhere plus the difference of the involute
-      // functions.
-      const double half = thickness + (std::tan(roll) - roll) - (std::tan(alpha) - alpha);
-      const double angle = side * half + twist * (Z - f.L0);
-      pinion_.emplace_back(R * std::cos(angle), R * std::sin(angle), Z);
+      Vec3 q = plain(R, Z);
+      double taken = 0;
+      for (const auto& m : on_pinion)
+        if (m.meets(side, zone))
+          taken += taken_by_the_words<double>(m, r_a - R, Z, 2 * parameters.addendum_coefficient * parameters.module_mm,
+                                              section(r_in_), section(r_out_));
+      if (taken != 0 && R > r_b + 1e-3) {  // into the material: away from the space
+        const double h = 1e-4;
+        Vec3 into = (plain(R + h, Z) - plain(R - h, Z)).cross(plain(R, Z + h) - plain(R, Z - h)).normalized();
+        if (side * (q.x() * into.y() - q.y() * into.x()) < 0) into = -into;
+        q += taken * into;
+      }
+      pinion_.push_back(q);
     }
   const double g = parameters.shaft_angle_rad, g_moved = g + moved.angle_rad;
   a_ = {std::sin(g_moved), 0, -std::cos(g_moved)};

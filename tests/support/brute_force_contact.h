@@ -1,5 +1,5 @@
-// When do a pinion and a face gear touch? Two dense clouds of flank points, turned until the first pair meets. No
-// normals, no parallel-surface theorem, no closed-form turn of the pinion.
+// When do a pinion and a face gear touch? Two dense clouds of flank points, modified by the words where they are,
+// turned until the first pair meets. No normals, no parallel-surface theorem, no closed-form turn of the pinion.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,8 @@ namespace toothpath::test {
 class BruteForceContact {
  public:
   BruteForceContact(const face_gear::FaceGear& gear, int zone, int side, int pinion_teeth,
-                    const contact::Misalignment& moved = {});
+                    const contact::Misalignment& moved = {},
+                    const std::vector<modification::Modification>& on_pinion = {});
 
   /// Turn of the gear at which it lies on the pinion that has turned by phi_1: extreme over all points of both clouds
   /// and over the neighbouring teeth. Error about the sag of the clouds' meshes, 1e-7 rad.

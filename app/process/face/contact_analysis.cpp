@@ -11,6 +11,8 @@ namespace toothpath::face {
 namespace {
 
 std::string kind_of(const ContactOfSide& side) {
+  if (std::any_of(side.members.begin(), side.members.end(), [](const auto& m) { return m.modified(); }))
+    return "modified";
   bool line = false, whole = false;
   for (std::size_t m = 0; m < side.members.size(); ++m) {
     line |= side.paths[m] && side.paths[m]->line_contact;
@@ -21,6 +23,16 @@ std::string kind_of(const ContactOfSide& side) {
   return side.as_cut || side.roll.error_range_rad < kNoError ? "point" : "point and edge";
 }
 
+/// The modification of the pinion's flank that runs on this one; null: plain.
+std::shared_ptr<const modification::Field> pinion_field(const face_gear::FaceGear& gear,
+                                                        const job::ContactSettings& settings,
+                                                        const contact::Pinion<double>& pinion, int zone, int side) {
+  modification::Field field(settings.modifications, side, zone,
+                            contact::rectangle_of(pinion, gear.rings()[static_cast<std::size_t>(zone)]));
+  if (field.empty()) return nullptr;
+  return std::make_shared<const modification::Field>(std::move(field));
+}
+
 Result<ContactOfSide> side_of(const face_gear::FaceGear& gear, std::vector<contact::ContactFlank> flanks,
                               const job::ContactSettings& settings, int steps, bool as_cut) {
   ContactOfSide side;
@@ -28,9 +40,12 @@ Result<ContactOfSide> side_of(const face_gear::FaceGear& gear, std::vector<conta
   side.as_cut = as_cut;
   for (auto& flank : flanks) {
     const auto& surface = gear.rings()[static_cast<std::size_t>(flank.zone)].surface;
-    side.members.push_back({std::move(flank), contact::make_pinion(surface, settings.pinion_teeth, settings.moved)});
+    const auto pinion = contact::make_pinion(surface, settings.pinion_teeth, settings.moved);
+    auto field = pinion_field(gear, settings, pinion, flank.zone, side.side);
+    side.members.push_back({std::move(flank), pinion, std::move(field)});
     const contact::ContactMember& member = side.members.back();
-    side.paths.push_back(contact::contact_path(surface, member.pinion, side.side));
+    // The closed form is of plain flanks.
+    side.paths.push_back(member.modified() ? std::nullopt : contact::contact_path(surface, member.pinion, side.side));
     side.ranges.push_back(side.paths.back() && !side.paths.back()->line_contact
                               ? contact::path_on_flanks(*side.paths.back(), member)
                               : std::nullopt);
@@ -43,6 +58,22 @@ Result<ContactOfSide> side_of(const face_gear::FaceGear& gear, std::vector<conta
   side.roll = std::move(*rolled);
   side.kind = kind_of(side);
   return side;
+}
+
+/// Modifications of the pinion that do not fit it.
+std::optional<modification::Refusal> refused_pinion(const face_gear::FaceGear& gear,
+                                                    const job::ContactSettings& settings) {
+  const auto zones = static_cast<int>(gear.rings().size());
+  for (std::size_t k = 0; k < settings.modifications.size(); ++k)
+    if (const auto zone = settings.modifications[k].zone; zone && *zone >= zones)
+      return modification::Refusal{fmt::format("modification[{}].zone", k),
+                                   fail("zone = {} is not below {}, the number of zones", *zone, zones)};
+  for (int zone = 0; zone < zones; ++zone) {
+    const auto& ring = gear.rings()[static_cast<std::size_t>(zone)];
+    const auto on = contact::rectangle_of(contact::make_pinion(ring.surface, settings.pinion_teeth), ring);
+    if (auto refusal = modification::refused(settings.modifications, zone, on)) return refusal;
+  }
+  return std::nullopt;
 }
 
 /// The pattern in words, as on a rolling tester: along the tooth or across it, how inclined, where it runs out.
@@ -103,10 +134,13 @@ process::ValueOrErrors<ContactAnalysis> with_load(const job::Job& job, const fac
                                                   ContactAnalysis analysis) {
   if (!analysis.settings.load) return analysis;
   std::vector<const contact::ContactFlank*> cut;
+  std::vector<const contact::ContactMember*> exact;
   for (const auto& side : analysis.sides)
-    if (side.as_cut)
-      for (const auto& member : side.members) cut.push_back(&member.flank);
-  auto loaded = analyse_loaded(job, gear, analysis.settings, analysis.settings.pinion_teeth, cut);
+    for (const auto& member : side.members) {
+      if (side.as_cut) cut.push_back(&member.flank);
+      else exact.push_back(&member);
+    }
+  auto loaded = analyse_loaded(job, gear, analysis.settings, analysis.settings.pinion_teeth, exact, cut);
   if (auto* errors = loaded.refused()) return std::move(*errors);
   analysis.loaded = std::move(loaded).value();
   return analysis;
@@ -144,6 +178,9 @@ process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, con
     analysis.notes.push_back(
         "an axial error turns the halves of a double helical pinion against each other: a pinion that floats would "
         "take the place without it");
+
+  if (auto refusal = refused_pinion(gear, settings))
+    return std::vector{process::located(job, "contact." + refusal->key, std::move(refusal->diagnostic))};
 
   const WorkShare share(cut ? 4 : 2);  // rolls
   for (const int s : {1, -1}) {

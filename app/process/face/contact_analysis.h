@@ -22,7 +22,7 @@ inline constexpr double kNoError = 1e-10;
 struct ContactOfSide {
   int side = 1;
   bool as_cut = false;  ///< the surface that was cut instead of the exact one
-  std::string kind;     ///< "point", "line" or "edge": where the flanks touch
+  std::string kind;  ///< "point", "line" or "edge": where plain flanks touch; "modified" of flanks that are not plain
   std::vector<contact::ContactMember> members;
   std::vector<std::optional<contact::ContactPath<double>>> paths;  ///< closed form, of the exact surface; one a member
   std::vector<std::optional<contact::PathRange>> ranges;           ///< its part on both flanks

@@ -83,6 +83,27 @@ double gap_of_cut(const std::vector<const contact::ContactFlank*>& flanks, const
   return 0;
 }
 
+/// What modifications take off gear and pinion opens the gap: mean over the piece of a line.
+double gap_of_modifications(const std::vector<const contact::ContactMember*>& members, const loaded::Segment& s) {
+  double sum = 0;
+  for (const auto* one : members) {
+    const contact::ContactMember& member = *one;
+    if (member.flank.zone != s.ring) continue;
+    constexpr int kPlaces = 9;
+    for (int k = 0; k < kPlaces; ++k) {
+      const Vec3 p = s.nearest + s.along * (s.length * ((k + 0.5) / kPlaces - 0.5));
+      if (member.flank.modified)
+        if (const auto* drawn = member.flank.modified->field(member.flank.side).drawn)
+          sum += drawn->removal(face_gear::FlankField::depth<double>(member.flank.surface, p, radius(p)), radius(p)) /
+                 kPlaces;
+      if (!member.on_pinion) continue;
+      const auto place = member.pinion.place(p);
+      sum += member.on_pinion->removal(member.pinion.r_a - place.radius, place.Z) / kPlaces;
+    }
+  }
+  return sum;
+}
+
 std::string name_of(const LoadedSide& side) {
   return fmt::format("flank {:+}, {}", side.side, side.as_cut ? "as cut" : "exact");
 }
@@ -155,6 +176,7 @@ Result<loaded::PairOptions> pair_options(const job::ContactLoad& load, const fac
 
 process::ValueOrErrors<LoadedContact> analyse_loaded(const job::Job& job, const face_gear::FaceGear& gear,
                                                      const job::ContactSettings& settings, int pinion_teeth,
+                                                     const std::vector<const contact::ContactMember*>& exact,
                                                      const std::vector<const contact::ContactFlank*>& cut) {
   LoadedContact found;
   found.settings = settings.load.value();
@@ -182,6 +204,11 @@ process::ValueOrErrors<LoadedContact> analyse_loaded(const job::Job& job, const 
   for (const int side : {1, -1}) {
     auto pair = loaded::make_loaded_pair(gear, side, pinion_teeth, *options);
     if (!pair) return std::vector{process::located(job, teeth_key, pair.error())};
+    std::vector<const contact::ContactMember*> modified;
+    for (const auto* member : exact)
+      if (member->flank.side == side && member->modified()) modified.push_back(member);
+    if (!modified.empty())
+      pair->options.gap = [&modified](const loaded::Segment& s) { return gap_of_modifications(modified, s); };
     const loaded::Load carried{found.torque_gear_Nm * 1000,
                                found.floating                                 ? loaded::PinionAxial::floating
                                : load.pinion_axial == job::PinionHold::spring ? loaded::PinionAxial::spring
@@ -196,7 +223,9 @@ process::ValueOrErrors<LoadedContact> analyse_loaded(const job::Job& job, const 
       if (flank->side == side) of_side.push_back(flank);
     if (of_side.empty()) continue;
     loaded::LoadedPair rough = *pair;
-    rough.options.gap = [&of_side](const loaded::Segment& s) { return gap_of_cut(of_side, s); };
+    rough.options.gap = [&](const loaded::Segment& s) {
+      return gap_of_cut(of_side, s) + gap_of_modifications(modified, s);
+    };
     auto worn = loaded::loaded_cycle(rough, carried);
     if (!worn) return std::vector{process::located(job, "contact.load", worn.error())};
     found.sides.push_back({side, true, std::move(*worn)});

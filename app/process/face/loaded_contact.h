@@ -40,12 +40,14 @@ struct LoadedRange {
 [[nodiscard]] Result<loaded::PairOptions> pair_options(const job::ContactLoad& load, const face_gear::FaceGear& gear,
                                                        const contact::Misalignment& moved);
 
-/// @param cut  flanks as they were cut, beside the exact ones; their deviation, mean over each piece of a line, is its
-/// gap. Refused, where the key stands: a rim that does not fit, a pinion that floats on one ring, a position where
-/// nothing touches.
+/// @param exact  the flanks of the drawing: what modifications take off them and off the pinion, mean over each piece
+/// of a line, is its gap
+/// @param cut    flanks as they were cut, beside them; their deviation counts in the same way. Refused, where the key
+/// stands: a rim that does not fit, a pinion that floats on one ring, a position
+/// where nothing touches.
 [[nodiscard]] process::ValueOrErrors<LoadedContact> analyse_loaded(
     const job::Job& job, const face_gear::FaceGear& gear, const job::ContactSettings& settings, int pinion_teeth,
-    const std::vector<const contact::ContactFlank*>& cut);
+    const std::vector<const contact::ContactMember*>& exact, const std::vector<const contact::ContactFlank*>& cut);
 
 /// Decks of CalculiX at the first position, the gear turned by the mean approach. Refused: as analyse_loaded.
 [[nodiscard]] process::ValueOrErrors<process::NamedFiles> loaded_decks(const job::Job& job,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "app/job/measured_file.h"
 #include "app/process/face/contact.h"
@@ -96,6 +97,33 @@ std::vector<std::string> shortened_passes(const plan::FaceGearPlan& plan) {
   return out;
 }
 
+/// Modifications that bend a flank or a fillet so hollow that the ball of an operation no longer fits, where it would
+/// fit the plain one.
+std::optional<Diagnostic> ball_in_hollow(const job::Job& job, const face_gear::FaceGear& gear) {
+  for (std::size_t n = 0; n < job.operations.size(); ++n) {
+    const path::MillingOperation& op = job.operations[n];
+    if (op.type != path::OperationType::finishing && op.type != path::OperationType::semi_finishing) continue;
+    const double R = job.tools[std::size_t(op.tool)].radius_mm() + op.allowance_mm;
+    for (std::size_t zone = 0; zone < gear.rings().size(); ++zone) {
+      const auto& form = gear.rings()[zone].form;
+      if (!form) continue;
+      for (const auto& [region, what, most, plain] :
+           {std::tuple(path::Region::flank, "flank", form->hollow_flank, form->plain_hollow_flank_mm),
+            {path::Region::fillet, "fillet", form->hollow_fillet, form->plain_hollow_fillet_mm}}) {
+        if (!op.regions[region] || most.value >= R || plain < R) continue;
+        const auto key = fmt::format("operation[{}].tool", n);
+        return process::located(
+            job, key,
+            fail("operation {}: the modifications make {} {:+d} of zone {} hollow with a radius of {:.4f} mm at radius "
+                 "{:.4f} mm, height {:.4f} mm (plain: {:.4f} mm at least): a ball of {:.4f} mm does not fit; a smaller "
+                 "ball, less amount or more length would do",
+                 n, what, most.side, zone, most.value, most.radius_mm, most.height_mm, plain, R));
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 class FaceMilling final : public process::GearMilling {
  public:
   FaceMilling(const job::Job& job, const machines::Machine& machine, const face_gear::FaceGear& gear,
@@ -108,6 +136,7 @@ class FaceMilling final : public process::GearMilling {
         check_(job, machine, limits, part_, gouge_, surface_options(grid)) {}
 
   [[nodiscard]] Status plan(app::StageClock& clock, app::Progress& progress) override {
+    if (auto refused = ball_in_hollow(job_, part_.gear())) return std::move(*refused);
     plan::Options options = options_;
     options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
     auto planned = clock.run("plan", [&] {
@@ -307,6 +336,10 @@ class FaceProcess final : public process::GearProcess {
  private:
   void note_part() {
     part_ = {gear_.parameters().teeth, 2 * gear_.outer_radius(), 2 * gear_.outer_radius(), gear_.warnings()};
+    report::ModifiedFlanks modified{gear_.parameters().modifications, {}};
+    for (std::size_t zone = 0; zone < gear_.rings().size(); ++zone)
+      if (const auto& form = gear_.rings()[zone].form) modified.zones.push_back({static_cast<int>(zone), *form});
+    if (!modified.zones.empty()) part_.modified = std::move(modified);
   }
 
   const job::Job& job_;

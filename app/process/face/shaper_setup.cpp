@@ -31,6 +31,12 @@ process::ValueOrErrors<machines::ShaperMachine> load_shaper_machine(const job::J
 
 process::ValueOrErrors<shaper::ShaperSetup> plan_shaper(const job::Job& job, const face_gear::FaceGear& gear,
                                                         const machines::ShaperMachine& machine) {
+  for (const auto& ring : gear.rings())
+    if (ring.modification)
+      return std::vector{process::located(
+          job, "gear.modification[0]",
+          fail("modification: a gear shaper makes the plain flanks of its cutter's involute, not modified ones; mill "
+               "this gear, or leave the modifications out"))};
   if (!job.shaping) return std::vector{fail_at(job.where(""), "the job lacks the table [shaping]")};
   shaper::ShaperWork work;
   work.job_name = job.name;

@@ -24,6 +24,7 @@ void begin_report(Run& run) {
   run.report = process::report_of(run.gear.correction ? "correct" : "run", run.job, run.machine,
                                   run.gear.process->part().warnings);
   report::RunReport& report = run.report;
+  report.modified = run.gear.process->part().modified;
   if (auto coarse = process::coarse_words(run.job, run.machine, 0.5 * run.gear.process->part().diameter_mm))
     report.warnings.push_back(std::move(*coarse));
   if (!run.gear.correction) return;

@@ -55,6 +55,28 @@ class Patches : public testing::TestWithParam<std::string> {
 
 TEST_P(Patches, NothingRestsOnSampling) { EXPECT_EQ(part.unproven(), 0U); }
 
+/// The same gears with some of every kind of modification that bends.
+face_gear::FaceGearParameters modified_gear(const std::string& name) {
+  auto g = test::gear_named(name);
+  using modification::Kind;
+  for (const Kind kind : {Kind::tip_relief, Kind::root_relief, Kind::end_relief, Kind::lead_crowning, Kind::twist}) {
+    modification::Modification m;
+    m.kind = kind;
+    m.amount_mm = 0.0025 * g.module_mm;
+    m.length_mm = 0.2 * g.module_mm;
+    m.law = kind == Kind::tip_relief ? modification::Law::linear : modification::Law::parabolic;
+    g.modifications.push_back(m);
+  }
+  return g;
+}
+class ModifiedPatches : public testing::TestWithParam<std::string> {
+ protected:
+  face_gear::FaceGear gear = test::made(modified_gear(GetParam()));
+  analytic::GearDistance part{gear, 1.0};
+};
+
+TEST_P(ModifiedPatches, NothingRestsOnSampling) { EXPECT_EQ(part.unproven(), 0U); }
+
 /// Does a box reach as far along g as the place p?
 testing::AssertionResult box_holds(const analytic::BodyBox& box, const Vec3& p, const Vec3& g) {
   const double beyond = std::abs(g.dot(p - box.centre)) - std::abs(g.dot(box.a)) - std::abs(g.dot(box.b)) - box.off;
@@ -65,7 +87,7 @@ testing::AssertionResult box_holds(const analytic::BodyBox& box, const Vec3& p, 
 
 /// A quad, halved at random some times, under a random direction: no place of its piece of the surface lies lower than
 /// its corners less `above`, or farther from the place of the hull with the same weights than `sag`.
-TEST_P(Patches, HullsHoldTheirPieces) {
+void expect_hulls_hold(const analytic::GearDistance& part) {
   test::Random random(23);
   for (int zone = 0; zone < part.zones(); ++zone) {
     const auto& patches = part.patches(zone);
@@ -105,6 +127,8 @@ TEST_P(Patches, HullsHoldTheirPieces) {
     EXPECT_LE(least, 1e-3);  // not far off everywhere
   }
 }
+TEST_P(Patches, HullsHoldTheirPieces) { expect_hulls_hold(part); }
+TEST_P(ModifiedPatches, HullsHoldTheirPieces) { expect_hulls_hold(part); }
 
 /// Every place of the sampled solid lies in some cell's hull up to its sag: tried with many directions.
 TEST_P(Patches, TheSolidIsCovered) {
@@ -164,6 +188,8 @@ TEST_P(Patches, SettledPlacesLieOnTheSolid) {
   }
 }
 
+INSTANTIATE_TEST_SUITE_P(Gears, ModifiedPatches, testing::ValuesIn(test::gear_names()),
+                         [](const auto& gear_case) { return gear_case.param; });
 INSTANTIATE_TEST_SUITE_P(Gears, Patches, testing::ValuesIn(test::gear_names()),
                          [](const auto& gear_case) { return gear_case.param; });
 

@@ -19,6 +19,7 @@
 #include "tests/cam/line/line_cases.h"
 #include "tests/support/brute_force_bodies.h"
 #include "tests/support/brute_force_line.h"
+#include "tests/support/modified_flank.h"
 #include "tests/support/random.h"
 
 namespace toothpath::test {
@@ -181,6 +182,59 @@ TEST_P(LineProof, FindsWhatTheSweptFlankShows) {
       EXPECT_GE(r.measured_mm, truth.gouge - 1e-4);
       EXPECT_LE(r.bound_mm, std::max(r.measured_mm, 0.0) + 2.5e-4);
     }
+}
+
+/// Points of a modified flank by the words, where the path of space 0 cuts them.
+std::vector<Vec3> modified_points(const Planned& p, int zone, int side, int columns, int rows) {
+  const auto& f = p.gear.rings()[std::size_t(zone)].surface;
+  const auto& on = p.gear.rings()[std::size_t(zone)].zone;
+  std::vector<Vec3> out;
+  for (int c = 0; c < columns; ++c) {
+    const double r = on.inner_radius_mm + (on.outer_radius_mm - on.inner_radius_mm) * (c + 0.01) / (columns - 0.98);
+    const double low = *face_gear::fillet_line_height(f, side, r), top = f.z_tip(r);
+    for (int k = 0; k < rows; ++k) {
+      const auto at = face_gear::invert_flank(f, side, r, top + (low - top) * (k + 0.01) / (rows - 0.98));
+      if (!at) continue;
+      const Vec3 q = modified_by_the_words<double>(f, p.gear.parameters(), zone, side, at->theta, at->B);
+      out.push_back(side > 0 ? q : face_gear::FaceGearSurface<double>::turned(q, p.gear.pitch()));
+    }
+  }
+  return out;
+}
+
+// Flanks modified along the face are milled on the modified flank, and proven against it.
+TEST(ModifiedLine, IsMilledAndProvenOnTheModifiedFlank) {
+  for (LineJob job : {line_jobs()[3], line_jobs()[4]}) {
+    for (const auto kind : {modification::Kind::lead_crowning, modification::Kind::helix_angle_slope}) {
+      modification::Modification m;
+      m.kind = kind;
+      m.amount_mm = 0.012;
+      job.parameters.modifications.push_back(m);
+    }
+    const auto p = planned(job, 0);
+    const double tau = job.tool.half_angle_rad, r_0 = 0.5 * job.tool.diameter_mm;
+    for (const int side : {1, -1}) {
+      const auto pass = pass_of(p, 0, side);
+      const auto points = modified_points(p, 0, side, 31, 17);
+      const auto truth = swept(points, {r_0, tau, 0, 0}, pass.way);
+      const auto r = checked(p, pass.motions, p.tool);
+      double misfit = 0;
+      for (const auto& one : p.plan.passes)
+        if (one.side == side) misfit = std::max(misfit, one.misfit_mm);
+      std::printf("%-10s side %+d modified: swept %.3f um, found %.3f um, bound %.3f um; left %.3f um, planned %.3f\n",
+                  job.name.c_str(), side, 1e3 * truth.gouge, 1e3 * r.measured_mm, 1e3 * r.bound_mm, 1e3 * truth.left,
+                  1e3 * misfit);
+      EXPECT_GE(r.bound_mm, truth.gouge);
+      EXPECT_GE(r.measured_mm, truth.gouge - 1e-4);
+      EXPECT_LE(r.bound_mm, std::max(r.measured_mm, 0.0) + 2.5e-4);
+      EXPECT_LT(r.bound_mm, 3e-3);
+      EXPECT_LT(truth.left, misfit + 4e-3);  // the corners of the ends, where the line is short
+      auto plain = job.parameters;
+      plain.modifications.clear();
+      const auto gone = swept(flank_points(p, plain, 0, side, 9, 5), {r_0, tau, 0, 0}, pass.way);
+      EXPECT_GT(gone.gouge, 0.01) << "the modification is not cut";
+    }
+  }
 }
 
 // 2 um by the whole pass, one record, a tilt of 2 um at the tips, a half angle and a ball radius that are larger than

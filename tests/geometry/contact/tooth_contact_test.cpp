@@ -220,6 +220,42 @@ TEST(Roll, InnerContactAgreesWithPointClouds) {
   }
 }
 
+/// Modified flanks of both, line contact turned into a patch, and the same by clouds that know the words only.
+TEST(Roll, ModifiedContactAgreesWithPointClouds) {
+  auto p = gear_of(case_named("offset_15"), 130.5, 147).parameters();
+  const auto of = [](modification::Kind kind, double amount, double length = 0) {
+    modification::Modification m;
+    m.kind = kind;
+    m.amount_mm = amount;
+    m.length_mm = length;
+    return m;
+  };
+  using modification::Kind;
+  p.modifications = {of(Kind::tip_relief, 0.02, 2), of(Kind::lead_crowning, 0.015), of(Kind::twist, 0.01),
+                     of(Kind::pressure_angle_slope, -0.006)};
+  const std::vector<modification::Modification> on_pinion = {
+      of(Kind::tip_relief, 0.012, 1.5), of(Kind::profile_crowning, 0.008), of(Kind::helix_angle_slope, 0.01)};
+  auto made = face_gear::FaceGear::make(p);
+  ASSERT_TRUE(made.value_if());
+  const face_gear::FaceGear& gear = *made.value_if();
+  for (const int side : {1, -1})
+    for (const int teeth : {25, 23}) {
+      auto member = member_of(gear, side, teeth);
+      const auto plain = member;
+      member.on_pinion = std::make_shared<const modification::Field>(
+          on_pinion, side, 0, contact::rectangle_of(member.pinion, gear.rings()[0]));
+      const auto rolled = contact::roll({member}, {.steps = 6});
+      ASSERT_TRUE(rolled) << rolled.error().message;
+      EXPECT_LT(rolled->patterns[0].marked_share, 0.9);
+      const BruteForceContact brute(gear, 0, side, teeth, {}, on_pinion);
+      for (const auto& position : rolled->cycle) EXPECT_NEAR(brute.gear_turn(position.phi_1), position.phi_2, 4e-7);
+      // The pinion's share is seen.
+      const auto without = contact::roll({plain}, {.steps = 6});
+      ASSERT_TRUE(without);
+      EXPECT_GT(std::abs(without->error_mean_rad - rolled->error_mean_rad) + rolled->error_range_rad, 1e-6);
+    }
+}
+
 /// Stock all over a flank is a turn of it by stock / M2; a planted hump shows with its height where the path crosses
 /// it.
 TEST(Roll, DeviationsShowInTheTransmissionError) {

@@ -1,0 +1,130 @@
+// [[gear.modification]] and [[contact.modification]]: flank modifications, and the grids that they name.
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "app/job/tables.h"
+#include "machines/toml/regular_file.h"
+
+namespace toothpath::job {
+namespace {
+
+using modification::Ends;
+using modification::Flanks;
+using modification::Kind;
+using modification::Law;
+
+constexpr toml::Range kAmount{-5, 5, " mm"}, kModifiedLength{0, 1000, " mm", true}, kTransition{0.01, 1000, " mm"};
+constexpr std::size_t kMostModifications = 50, kMostGridBytes = 1u << 20, kMostGridLines = 100;
+constexpr std::string_view kGridHeader = "along,depth,removal";
+
+/// Three numbers of a line; nothing where it is anything else.
+std::optional<std::array<double, 3>> numbers_of(std::string_view line) {
+  std::array<double, 3> out{};
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const std::size_t comma = line.find(',');
+    if ((comma == std::string_view::npos) != (k + 1 == out.size())) return {};
+    std::string_view cell = line.substr(0, comma);
+    while (!cell.empty() && cell.front() == ' ') cell.remove_prefix(1);
+    while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), out[k]);
+    if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(out[k])) return {};
+    if (comma != std::string_view::npos) line.remove_prefix(comma + 1);
+  }
+  return out;
+}
+
+/// The lines of a grid in any order, every depth with every place along the face once.
+Result<modification::Grid> parse_grid(const std::string& text, const std::string& path) {
+  std::map<double, std::map<double, double>> rows;  // depth, along
+  std::map<double, int> places;
+  int number = 0;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    std::string_view line(text.data() + at, end - at);
+    at = end + 1;
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    ++number;
+    if (number == 1) {
+      if (line != kGridHeader) return fail_at({path, 1, 1}, "the first line must be \"{}\"", kGridHeader);
+      continue;
+    }
+    if (line.empty()) continue;
+    const auto value = numbers_of(line);
+    if (!value) return fail_at({path, number, 1}, "three finite numbers in mm are needed: {}", kGridHeader);
+    if (!rows[(*value)[1]].emplace((*value)[0], (*value)[2]).second)
+      return fail_at({path, number, 1}, "along = {:g}, depth = {:g} stands there twice", (*value)[0], (*value)[1]);
+    ++places[(*value)[0]];
+    if (rows.size() > kMostGridLines || places.size() > kMostGridLines)
+      return fail_at({path, number, 1}, "the grid has more than {} lines one way", kMostGridLines);
+  }
+  modification::Grid grid;
+  for (const auto& [along, count] : places) grid.along_mm.push_back(along);
+  for (const auto& [depth, row] : rows) {
+    grid.depth_mm.push_back(depth);
+    for (const double along : grid.along_mm) {
+      const auto found = row.find(along);
+      if (found == row.end())
+        return fail_at({path, number, 1}, "along = {:g}, depth = {:g} is missing: every depth needs every place", along,
+                       depth);
+      grid.removal_mm.push_back(found->second);
+    }
+  }
+  return grid;
+}
+
+void read_grid(toml::TableReader& table, const std::string& directory, modification::Modification& m) {
+  m.amount_mm = 1;
+  const auto name = table.text("file");
+  if (!name) return;
+  const auto path = (std::filesystem::path(directory) / *name).string();
+  const auto text = toml::read_input_file(path, kMostGridBytes);
+  if (!text) return table.refuse("file", "file = \"{}\": {}", *name, text.error().message);
+  auto grid = parse_grid(*text, path);
+  if (!grid) return table.refuse_at(grid.error().position, "{}", grid.error().message);
+  m.grid = std::move(*grid);
+}
+
+void read_relief(toml::TableReader& table, modification::Modification& m) {
+  m.length_mm = table.number("length", kModifiedLength).value_or(1);
+  m.law = table.word_or("law", {"linear", "parabolic"}, "parabolic") == "linear" ? Law::linear : Law::parabolic;
+  m.transition_mm = table.optional_number("transition", kTransition);
+  if (m.transition_mm && m.law == Law::parabolic)
+    table.refuse("transition",
+                 "transition contradicts law = \"parabolic\": a parabola begins without a kink to be rounded");
+  if (m.kind != Kind::end_relief) return;
+  const auto end = table.word_or("end", {"both", "inner", "outer"}, "both");
+  m.ends = end == "inner" ? Ends::inner : end == "outer" ? Ends::outer : Ends::both;
+}
+
+}  // namespace
+
+std::vector<modification::Modification> read_modifications(toml::TableReader& owner, const std::string& directory) {
+  std::vector<modification::Modification> out;
+  auto tables = owner.tables("modification", {0, kMostModifications});
+  if (tables.size() > kMostModifications)
+    owner.refuse("modification", "{} modifications exceed the limit {}", tables.size(), kMostModifications);
+  std::vector<std::string_view> words;
+  for (int k = 0; k < modification::kKinds; ++k) words.emplace_back(to_string(Kind(k)));
+  for (auto& table : tables) {
+    modification::Modification m;
+    const auto word = table.variant("kind", words);
+    if (!word) {
+      table.name_misspelt("kind");
+      continue;
+    }
+    while (to_string(m.kind) != *word) m.kind = Kind(int(m.kind) + 1);
+    if (m.kind == Kind::grid) read_grid(table, directory, m);
+    else m.amount_mm = table.number("amount", kAmount).value_or(0);
+    if (modification::is_relief(m.kind)) read_relief(table, m);
+    const auto flank = table.word_or("flank", {"both", "left", "right"}, "both");
+    m.flanks = flank == "left" ? Flanks::left : flank == "right" ? Flanks::right : Flanks::both;
+    m.zone = table.optional_integer("zone", {0, 1});
+    table.finish();
+    out.push_back(std::move(m));
+  }
+  return out;
+}
+
+}  // namespace toothpath::job
