@@ -2,7 +2,9 @@
 // one thread and on all, one after the other, so that the rows of a job can be compared; both must write the same
 // program.
 //
-//   toothpath_run_bench [JOB.toml ...]      without a job: the samples that finish with ball mills and by the line
+//   toothpath_run_bench [JOB.toml ...]      without a job: the samples that finish with ball mills and by the line, and
+//   a bevel gear whose 60 teeth stand off the C axis and are written out: as a multiple of the same gear on the axis,
+//   where one tooth stands for all
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,6 +15,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -60,7 +63,8 @@ Run run(const std::string& job, int threads, const fs::path& dir) {
 }
 
 /// @return did both runs end well, with the same program?
-bool rows(const std::string& job, int all, const fs::path& dir) {
+/// @param one  processor seconds on one thread
+bool rows(const std::string& job, int all, const fs::path& dir, double& one) {
   std::vector<Run> runs;
   for (const int threads : {1, all}) {
     fs::remove_all(dir);
@@ -76,6 +80,7 @@ bool rows(const std::string& job, int all, const fs::path& dir) {
     std::printf("\n");
     std::fflush(stdout);
   }
+  one = runs[0].cpu;
   const bool same = runs[0].exit_code == 0 && runs[1].exit_code == 0 && runs[0].program == runs[1].program;
   if (!same) std::printf("%s: not the same program on %d threads as on one\n", job.c_str(), all);
   else
@@ -84,11 +89,53 @@ bool rows(const std::string& job, int all, const fs::path& dir) {
   return same;
 }
 
+/// Writes the bevel wheel of the samples with 60 teeth. Ends the program where the sample has no such line any more.
+std::string bevel_job(const char* machine, const char* origin, const fs::path& dir) {
+  std::string text = text_of(fs::path(TOOTHPATH_SAMPLES) / "bevel_wheel.toml");
+  const std::pair<const char*, std::string> lines[] = {
+      {"teeth", "60"},
+      {"mate_teeth", "29"},
+      {"face_width", "58.0"},
+      {"apex_cone_distance", "168.5"},
+      {"origin", origin},
+      {"work_offset_at", origin},
+      {"file", '"' + std::string(machine) + "\"\naccept_assumed = true"}};
+  for (const auto& [key, value] : lines) {
+    const std::regex line("(^|\n)" + std::string(key) + " = [^\n]*");
+    if (!std::regex_search(text, line)) {
+      std::fprintf(stderr, "bevel_wheel.toml has no line %s\n", key);
+      std::exit(1);
+    }
+    text = std::regex_replace(text, line, "$1" + std::string(key) + " = " + value,
+                              std::regex_constants::format_first_only);
+  }
+  fs::create_directories(dir);
+  const fs::path job = dir / ("bevel_60_" + std::string(machine) + ".toml");
+  std::ofstream(job) << text;
+  return job.string();
+}
+
+/// Teeth that are written out, beside the same teeth as copies of one.
+bool bevel_rows(int all, const fs::path& dir, const fs::path& jobs) {
+  double copies = 0;
+  bool good = rows(bevel_job("xyzac_large", "[3.0, -2.0, 260.0]", jobs), all, dir, copies);
+  for (const char* machine : {"fanuc_ac", "haas_ac"}) {
+    double written = 0;
+    good = rows(bevel_job(machine, "[43.0, -22.0, 260.0]", jobs), all, dir, written) && good;
+    if (copies > 0)
+      std::printf("%-28s     60 teeth one by one: %.2f times the processor time of 60 copies of one\n", "",
+                  written / copies);
+  }
+  fs::remove_all(jobs);
+  return good;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
   std::vector<std::string> jobs(words + 1, words + count);
-  if (jobs.empty())
+  const bool own = jobs.empty();
+  if (own)
     for (const char* name : {"dhfg_ball", "dhfg_paper", "dhfg_t600s", "short_tool"})
       jobs.push_back(std::string(TOOTHPATH_SAMPLES) + "/" + name + ".toml");
   const int all = std::max(2, int(std::thread::hardware_concurrency()));
@@ -96,7 +143,9 @@ int main(int count, char** words) {
   std::printf("%-28s %3s %8s %8s %8s %9s | %8s %8s %8s %9s\n", "job", "thr", "cpu s", "wall s", "cpu/wall", "peak MB",
               "gouge um", "bound um", "left um", "bytes");
   bool good = true;
-  for (const std::string& job : jobs) good = rows(job, all, dir) && good;
+  double one = 0;
+  for (const std::string& job : jobs) good = rows(job, all, dir, one) && good;
+  if (own) good = bevel_rows(all, dir, dir.string() + ".jobs") && good;
   fs::remove_all(dir);
   return good ? 0 : 1;
 }
