@@ -49,8 +49,8 @@ struct VerifySettings {
 struct ProgramSettings {
   std::optional<int>
       number;  ///< of the main program (O word), its sub-programs behind it; none: made of the job's name
-  bool spread_teeth = false;  ///< tooth_order = "spread": neighbours are not cut one after the other; else in sequence
-  text::TextWishes text;      ///< stops and numbers of blocks
+  bool spread_teeth = false;   ///< tooth_order = "spread": neighbours are not cut one after the other; else in sequence
+  text::TextWishes text;       ///< stops and numbers of blocks
   bool tilted_planes = false;  ///< cuts with a standing tool axis in tilted planes of the control
   std::optional<double> contour_tolerance_mm;  ///< that the text allows the control; none: a share of what is left
   std::optional<machines::PoleOption> pole;    ///< instead of post.pole of the machine file

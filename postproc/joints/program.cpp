@@ -200,7 +200,8 @@ class ProgramBuilder {
     program_.no_loop = "";
     coincident_ = (gear_.origin - c.point_mm).cross(c.direction).norm() <= kCoincident;
     const bool in_every_text = options_.tilted_planes && options_.index_is_rounded;  // no variable in a called tooth
-    program_.loop = coincident_ && !options_.expand_teeth && !in_every_text && teeth_ > 1 && (!tcp() || frame_can_turn());
+    program_.loop =
+        coincident_ && !options_.expand_teeth && !in_every_text && teeth_ > 1 && (!tcp() || frame_can_turn());
     if (in_every_text) program_.no_loop = "the tilted plane of this control stands in the text of every tooth";
     if (!coincident_) program_.no_loop = "the gear does not turn about its own axis";
     else if (tcp() && !frame_can_turn())

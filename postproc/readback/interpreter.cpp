@@ -332,7 +332,8 @@ class Interpreter {
     if (r.euler[0] || r.euler[1] || r.euler[2]) return here(r.column, "I, J and K belong to G68.2");
     if (r.no_plane) execution_.reset_plane();
     const bool call = !r.m.empty() && (r.m.front() == 97 || r.m.front() == 98);
-    if ((r.p || r.q) && !r.g64 && !r.to_reference && !r.output && !call) return here(r.p_column, "P or Q without G64 or M98");
+    if ((r.p || r.q) && !r.g64 && !r.to_reference && !r.output && !call)
+      return here(r.p_column, "P or Q without G64 or M98");
     if (r.incremental) execution_.set_incremental();
     if (r.l) return here(r.column, "L is not in the subset");
     if (language_.stops_at_corners) return stop_or_flow(r);

@@ -79,7 +79,7 @@ struct NcPlanes {
   /// In a loop whose control takes no arithmetic in a word: this line ahead of `on`, with the {angle} that is added to
   /// that of the tooth, and the variable that holds the sum. Empty: `NcLoop::index` and the angle.
   std::string index_line, index;
-  std::string assumed;       ///< of the control, with {axis} that tilts
+  std::string assumed;  ///< of the control, with {axis} that tilts
 };
 
 /// What a control wants to read.

@@ -178,7 +178,6 @@ process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, con
     analysis.notes.push_back(
         "an axial error turns the halves of a double helical pinion against each other: a pinion that floats would "
         "take the place without it");
-
   if (auto refusal = refused_pinion(gear, settings))
     return std::vector{process::located(job, "contact." + refusal->key, std::move(refusal->diagnostic))};
 

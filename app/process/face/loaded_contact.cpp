@@ -353,8 +353,9 @@ std::string loaded_summary(const LoadedContact& found) {
       out += fmt::format("    pressure {:.0f} MPa at most, {:.0f} on the ends of lines\n", p.most, end.most);
     else if (edge == 0) out += fmt::format("    pressure {:.0f} MPa at most, no edge carries\n", p.most);
     else
-      out += fmt::format("    pressure {:.0f} MPa at most, {:.0f} N/mm along edges, whose pressure is that of their radius\n",
-                         p.most, edge);
+      out += fmt::format(
+          "    pressure {:.0f} MPa at most, {:.0f} N/mm along edges, whose pressure is that of their radius\n", p.most,
+          edge);
     if (found.rings > 1)
       out += fmt::format(
           "    outer ring {:.1f} to {:.1f} % of the load, axial force {:.1f} to {:.1f} N (one helix {:.1f})\n",

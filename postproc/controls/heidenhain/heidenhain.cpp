@@ -13,6 +13,21 @@ namespace toothpath::controls {
 
 namespace {
 
+text::NcPlanes planes() {
+  text::NcPlanes p;
+  p.shift = {"TRANS DATUM AXIS X{plane_x} Y{plane_y} Z{plane_z}"};
+  p.on = {"PLANE SPATIAL SPA{tilt_x} SPB{tilt_y} SPC{turn} TURN FMAX SEQ{pair} TABLE ROT"};
+  p.off = {"PLANE RESET STAY", "TRANS DATUM RESET"};
+  p.index_line = "FN 1: Q5 = +Q2 + {angle}";
+  p.index = "Q5";
+  p.upper = "+";
+  p.lower = "-";
+  p.assumed =
+      "SEQ+ of PLANE SPATIAL takes the pair with {axis} above its zero, SEQ- below; the preset is that of the part "
+      "with all rotaries at zero; every rotary goes the nearer way";
+  return p;
+}
+
 text::NcDialect words() {
   text::NcDialect d;
   d.name = "heidenhain";
@@ -50,16 +65,7 @@ text::NcDialect words() {
   d.tcp_off = {"FUNCTION RESET TCPM"};
   d.vector_words = {"TX", "TY", "TZ"};
   d.vector_feed = "LN";
-  d.planes.shift = {"TRANS DATUM AXIS X{plane_x} Y{plane_y} Z{plane_z}"};
-  d.planes.on = {"PLANE SPATIAL SPA{tilt_x} SPB{tilt_y} SPC{turn} TURN FMAX SEQ{pair} TABLE ROT"};
-  d.planes.off = {"PLANE RESET STAY", "TRANS DATUM RESET"};
-  d.planes.index_line = "FN 1: Q5 = +Q2 + {angle}";
-  d.planes.index = "Q5";
-  d.planes.upper = "+";
-  d.planes.lower = "-";
-  d.planes.assumed =
-      "SEQ+ of PLANE SPATIAL takes the pair with {axis} above its zero, SEQ- below; the preset is that of the part "
-      "with all rotaries at zero; every rotary goes the nearer way";
+  d.planes = planes();
   d.loop.form = text::NcLoop::Form::in_line;
   d.loop.before = {"{first_tooth}", "Q1 = {first}", "LBL {label}", "{pick}", "Q2 = {turns} * 360 / {teeth}"};
   d.loop.after = {"Q1 = Q1 + 1", "FN 12: IF +Q1 LT +{teeth} GOTO LBL {label}"};

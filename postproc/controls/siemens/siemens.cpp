@@ -14,6 +14,19 @@ namespace toothpath::controls {
 
 namespace {
 
+text::NcPlanes planes() {
+  text::NcPlanes p;
+  // _MODE 39: axis by axis about Z, X and Y.
+  p.on = {"CYCLE800(0,\"\",0,39,{plane_x},{plane_y},{plane_z},{turn},{tilt_x},{tilt_y},0,0,0,{pair},0,1)"};
+  p.off = {"CYCLE800()"};
+  p.upper = "1";
+  p.lower = "-1";
+  p.assumed =
+      "CYCLE800 has one swivel data set, whose direction 1 is {axis} above its zero and -1 below; CYCLE800() turns "
+      "nothing; every rotary goes the nearer way";
+  return p;
+}
+
 text::NcDialect words() {
   text::NcDialect d;
   d.name = "siemens";
@@ -50,14 +63,7 @@ text::NcDialect words() {
   d.tcp_on = {"TRAORI", "{offset}", "ORIWKS", "ORIAXES"};
   d.tcp_off = {"TRAFOOF", "{offset}"};
   d.vector_words = {"A3=", "B3=", "C3="};
-  // _MODE 39: axis by axis about Z, X and Y.
-  d.planes.on = {"CYCLE800(0,\"\",0,39,{plane_x},{plane_y},{plane_z},{turn},{tilt_x},{tilt_y},0,0,0,{pair},0,1)"};
-  d.planes.off = {"CYCLE800()"};
-  d.planes.upper = "1";
-  d.planes.lower = "-1";
-  d.planes.assumed =
-      "CYCLE800 has one swivel data set, whose direction 1 is {axis} above its zero and -1 below; CYCLE800() turns "
-      "nothing; every rotary goes the nearer way";
+  d.planes = planes();
   d.loop.form = text::NcLoop::Form::in_line;
   d.loop.before = {"{first_tooth}", "FOR R1={first} TO {last}", "{pick}", "R2={turns}*360/{teeth}"};
   d.loop.pick = {"R4=R1*{stride}-{teeth}*TRUNC((R1*{stride}+0.5)/{teeth})"};
