@@ -14,6 +14,7 @@
 #include "app/process/opening_and_end.h"
 #include "machines/toml/regular_file.h"
 #include "postproc/controls/of_machine.h"
+#include "postproc/controls/registry.h"
 
 namespace toothpath::probing {
 namespace {
@@ -90,7 +91,7 @@ CommandOutcome write_program(const ProbeRequest& request, const Inputs& in, app:
   program.guarded_feed = kGuardedFeed;
   if (const auto placed = place_touches(in.plan, setup, in.machine, program); !placed)
     return app::failed(process::located(in.job, "setup.origin", placed.error()));
-  const auto text = probing_text(program, in.machine.dialect);
+  const auto text = controls::probing_text(program, in.machine.dialect);
   if (!text) return app::failed(process::located(in.job, "machine.file", text.error()));
   CommandOutcome outcome;
   const std::string name = std::string(kProgram) + dialect->extension;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cam/tool/assembly.h"
+#include "postproc/probing/probing.h"
 #include "postproc/readback/reader.h"
 #include "postproc/text/dialect.h"
 
@@ -39,6 +40,7 @@ struct Control {
   bool cutter_locations =
       false;  ///< the text has places of the tool; in which order the axes move is the business of a post processor
   std::optional<ToolTable> tool_table = std::nullopt;  ///< none: tools are entered at the control
+  probing::ProbingWords probe = nullptr;               ///< a probing program in its words; null: it has none
 };
 
 }  // namespace toothpath::controls

@@ -60,4 +60,13 @@ std::vector<std::string> program_extensions() {
   return extensions;
 }
 
+Result<std::string> probing_text(const probing::ProbeProgram& program, std::string_view dialect) {
+  const Control* control = find(dialect);
+  if (control != nullptr && control->probe != nullptr) return control->probe(program);
+  std::string have;
+  for (const Control* c : all())
+    if (c->probe != nullptr) have += (have.empty() ? "" : ", ") + c->words.name;
+  return fail("dialect = \"{}\" has no words for a probe; these have: {}", dialect, have);
+}
+
 }  // namespace toothpath::controls

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "geometry/base/result.h"
 #include "postproc/controls/control.h"
 
 namespace toothpath::controls {
@@ -19,5 +20,7 @@ namespace toothpath::controls {
 [[nodiscard]] std::string list_of_names();
 /// File extensions of programs, each once: ".ngc", ".nc" .. Whoever removes or refuses programs asks here.
 [[nodiscard]] std::vector<std::string> program_extensions();
+/// A probing program as text of a control. Refused: a control without such words.
+[[nodiscard]] Result<std::string> probing_text(const probing::ProbeProgram& program, std::string_view dialect);
 
 }  // namespace toothpath::controls

@@ -11,7 +11,7 @@ constexpr int kFirstResult = 1600;  ///< Q parameters that are free for programs
 
 }  // namespace
 
-std::string heidenhain_probing(const ProbeProgram& program) {
+std::string touch_probe_probing(const ProbeProgram& program) {
   std::string out = "BEGIN PGM PROBE_SETUP MM\n";
   const auto add = [&](const std::string& line) { out += line + "\n"; };
   for (const auto& line : header(program)) add("; " + line);

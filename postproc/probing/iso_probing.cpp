@@ -124,8 +124,7 @@ std::string fanuc_text(const ProbeProgram& program) {
 
 }  // namespace
 
-std::string iso_probing(const ProbeProgram& program, IsoKin kin) {
-  return kin == IsoKin::linuxcnc ? linuxcnc_text(program) : fanuc_text(program);
-}
+std::string g38_probing(const ProbeProgram& program) { return linuxcnc_text(program); }
+std::string g31_probing(const ProbeProgram& program) { return fanuc_text(program); }
 
 }  // namespace toothpath::probing

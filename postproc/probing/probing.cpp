@@ -28,16 +28,4 @@ std::vector<std::string> header(const ProbeProgram& program) {
           "NO MACHINE WAS AT HAND: RUN IT SLOWLY AND ABOVE THE PART FIRST"};
 }
 
-Result<std::string> probing_text(const ProbeProgram& program, std::string_view dialect) {
-  if (dialect == "linuxcnc") return iso_probing(program, IsoKin::linuxcnc);
-  if (dialect == "fanuc" || dialect == "mitsubishi_m80" || dialect == "haas")
-    return iso_probing(program, IsoKin::fanuc);
-  if (dialect == "siemens") return siemens_probing(program);
-  if (dialect == "heidenhain") return heidenhain_probing(program);
-  return fail(
-      "dialect = \"{}\" has no words for a probe; linuxcnc, fanuc, mitsubishi_m80, haas, siemens and heidenhain "
-      "have",
-      dialect);
-}
-
 }  // namespace toothpath::probing

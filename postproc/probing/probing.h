@@ -35,7 +35,10 @@ struct ProbeProgram {
 
 /// The program as text of a control: ways to and from a touch stop where the probe meets something, a touch that meets
 /// nothing ends it, and every touch logs "number x y z".
-/// Errors: a control without such words.
-[[nodiscard]] Result<std::string> probing_text(const ProbeProgram& program, std::string_view dialect);
+using ProbingWords = std::string (*)(const ProbeProgram& program);
+[[nodiscard]] std::string g38_probing(const ProbeProgram& program);          ///< G38.3, G38.2, LOG
+[[nodiscard]] std::string g31_probing(const ProbeProgram& program);          ///< G31, DPRNT
+[[nodiscard]] std::string meas_probing(const ProbeProgram& program);         ///< MEAS
+[[nodiscard]] std::string touch_probe_probing(const ProbeProgram& program);  ///< TCH PROBE
 
 }  // namespace toothpath::probing

@@ -8,12 +8,6 @@
 
 namespace toothpath::probing {
 
-enum class IsoKin { linuxcnc, fanuc };
-
-[[nodiscard]] std::string iso_probing(const ProbeProgram& program, IsoKin kin);
-[[nodiscard]] std::string siemens_probing(const ProbeProgram& program);
-[[nodiscard]] std::string heidenhain_probing(const ProbeProgram& program);
-
 /// A letter and a value with four decimals; `sign`: a plus, too.
 [[nodiscard]] std::string word(char letter, double value, bool sign = false);
 /// X and Y of a place, or all three, blanks between.

@@ -38,8 +38,7 @@ class Writer {
         planes_(program, dialect, out_),
         clamps_(program, dialect, header.wishes.stops == Stops::teeth),
         tcp_(program.tcp != machines::TcpMode::none),
-        zero_moves_(program.loop && !program.planes && !dialect.loop.zero_on.empty() &&
-                    (!tcp_ || dialect.loop.zero_with_tcp)) {}
+        zero_moves_(program.loop && !dialect.loop.zero_on.empty() && (!tcp_ || dialect.loop.zero_with_tcp)) {}
 
   Result<NcText> write() {
     if (header_.coolant != machines::Coolant::off) {
@@ -225,7 +224,7 @@ class Writer {
   /// One tooth, its index angle given by the control's arithmetic.
   void loop_body(const joints::AxisOperation& op) {
     fill(dialect_.loop.before);
-    if (zero_moves_) fill(dialect_.loop.zero_on);
+    if (zero_moves_ && !tilts_) fill(dialect_.loop.zero_on);
     tooth_of_loop(op);
     behind_tooth();
     fill(dialect_.loop.after);
@@ -345,8 +344,13 @@ class Writer {
 
   /// The rotaries turn by a tilted plane; where the block has none the one before ends.
   bool turn_to_plane(const joints::AxisBlock& b, IndexWord index) {
-    if (planes_.tilted(b)) planes_.on(b, index, values_);
-    else fill(dialect_.planes.off);
+    if (planes_.tilted(b)) {
+      if (zero_moves_) fill(dialect_.loop.zero_off);  // the plane has the turn of the index itself
+      planes_.on(b, program_.loop ? IndexWord::shifted : index, values_);
+    } else {
+      fill(dialect_.planes.off);
+      if (zero_moves_) fill(dialect_.loop.zero_on);
+    }
     forget();
     if (!planes_.tilted(b)) return false;
     words_.turn_by_plane(b);

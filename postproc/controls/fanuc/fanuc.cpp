@@ -83,6 +83,6 @@ readback::IsoLanguage fanuc_language() {
 
 WorkOffsets fanuc_offsets() { return {"G54 to G59 and G54.1 P1 to P300", has_offset}; }
 
-Control fanuc() { return {fanuc_words(), {}, fanuc_offsets(), execute}; }
+Control fanuc() { return {fanuc_words(), {}, fanuc_offsets(), execute, false, std::nullopt, probing::g31_probing}; }
 
 }  // namespace toothpath::controls

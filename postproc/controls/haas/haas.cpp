@@ -54,6 +54,9 @@ bool has_offset(std::string_view name) {
 
 }  // namespace
 
-Control haas() { return {words(), {}, {"G54 to G59 and G154 P1 to P99", has_offset}, execute}; }
+Control haas() {
+  return {
+      words(), {}, {"G54 to G59 and G154 P1 to P99", has_offset}, execute, false, std::nullopt, probing::g31_probing};
+}
 
 }  // namespace toothpath::controls

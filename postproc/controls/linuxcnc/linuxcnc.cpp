@@ -104,8 +104,13 @@ bool has_offset(std::string_view name) { return basic_offset(name) > 0 || tenth_
 }  // namespace
 
 Control linuxcnc() {
-  return {words(), {},    {"G54 to G59 and G59.1 to G59.3", has_offset},
-          execute, false, ToolTable{"program_tools.tbl", tool_table}};
+  return {words(),
+          {},
+          {"G54 to G59 and G59.1 to G59.3", has_offset},
+          execute,
+          false,
+          ToolTable{"program_tools.tbl", tool_table},
+          probing::g38_probing};
 }
 
 }  // namespace toothpath::controls

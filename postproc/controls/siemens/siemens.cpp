@@ -95,7 +95,10 @@ Control siemens() {
   return {words(),
           {"sinumerik"},
           {"G54 to G57 and G505 to G599 (G58 and G59 shift single axes)", has_offset},
-          execute_siemens};
+          execute_siemens,
+          false,
+          std::nullopt,
+          probing::meas_probing};
 }
 
 }  // namespace toothpath::controls

@@ -6,6 +6,8 @@
 #include <sstream>
 
 #include "postproc/probing/probing.h"
+
+#include "postproc/controls/registry.h"
 #include "tests/support/rs274.h"
 
 namespace toothpath::test {
@@ -105,7 +107,7 @@ Walk walk_of(const std::string& text) {
 TEST(ProbingText, EveryControlGoesDownTouchesGoesBackAndUp) {
   const ProbeProgram p = sample();
   for (const char* dialect : {"linuxcnc", "fanuc", "mitsubishi_m80", "haas", "siemens", "heidenhain"}) {
-    const auto text = probing::probing_text(p, dialect);
+    const auto text = controls::probing_text(p, dialect);
     ASSERT_TRUE(text) << dialect;
     std::istringstream in(*text);
     for (std::string line; std::getline(in, line);) {
@@ -145,13 +147,13 @@ TEST(ProbingText, EveryControlGoesDownTouchesGoesBackAndUp) {
     EXPECT_EQ(next, p.touches.size()) << dialect;
     EXPECT_NEAR(height, -2.5, 1e-9) << dialect;
   }
-  const auto none = probing::probing_text(p, "apt");
+  const auto none = controls::probing_text(p, "apt");
   ASSERT_FALSE(none);
   EXPECT_NE(none.error().message.find("dialect = \"apt\" has no words for a probe"), std::string::npos);
 }
 
 TEST(ProbingTextLinuxcnc, TheInterpreterProbesThePlannedPlaces) {
-  const auto text = probing::probing_text(sample(), "linuxcnc");
+  const auto text = controls::probing_text(sample(), "linuxcnc");
   ASSERT_TRUE(text);
   const Canonical seen = interpret(*text, "probing");
   // Nothing trips in the stand-alone interpreter: a touch ends where its way ends, and that is what is logged.

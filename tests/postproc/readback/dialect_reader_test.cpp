@@ -37,7 +37,7 @@ TEST(SiemensReader, RefusalsNameLineAndColumn) {
       {"G0 X1 G91\n", "p:10:7: error: G91 is not in the subset"},
       {"G0 X1 X2\n", "p:10:7: error: two X words in a block"},
       {"CYCLE832(0.01)\n", "p:10:14: error: _FINISH,1 or _ORI_FINISH and its tolerance"},
-      {"CYCLE800()\n", "p:10:1: error: CYCLE is not in the subset"},
+      {"CYCLE801()\n", "p:10:1: error: CYCLE is not in the subset"},
       {"TRAORI\n", "p:10:1: error: TCP at a position that the program did not set"},
       {"ENDFOR\n", "ENDFOR closes nothing"},
       {"FOR R1=0 TO 3\n", "FOR is never closed"},
