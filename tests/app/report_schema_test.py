@@ -53,8 +53,9 @@ def written():
 
 
 known, keys = set(properties(schema)), written()
-# Told by words of other rooms: regions, the names of the scene, the data of commands (app/base/command_data.h).
-elsewhere = {"flank", "fillet", "root", "fixture", "stock", "limits", "set_up"}
+# Told by words of other rooms: regions, the names of the scene, the data of commands (app/base/command_data.h); the units of what
+# modifications come to.
+elsewhere = {"flank", "fillet", "root", "fixture", "stock", "limits", "set_up", "um", "mrad", "radius_mm"}
 for key in sorted(keys - known):
     faults.append(f"the schema lacks {key}")
 for key in sorted(known - keys - elsewhere):
@@ -77,6 +78,7 @@ with tempfile.TemporaryDirectory() as folder:
         ("run", 0, ["samples/tool_axis.toml"]),
         ("run", 0, ["samples/dhfg_t600s.toml"]),
         ("surface", 0, ["samples/offset_milled.toml"]),
+        ("surface", 0, ["samples/spur_modified.toml"]),
         ("surface", 0, ["samples/bevel_wheel.toml"]),
         ("surface", 0, ["samples/spur_quick.toml", "--step"]),
         ("shaper", 0, ["samples/offset_shaped.toml"]),

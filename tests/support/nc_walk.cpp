@@ -306,7 +306,8 @@ class SiemensWalker : public Walker {
   std::string uncommented(const std::string& line) const override { return stripped(line.substr(0, line.find(';'))); }
   bool execute(const std::string& code) override {
     static const std::regex loop(R"((?:FOR) (R\d+)=(.*) TO (.*))"), assign(R"((R\d+)=(.*))"), tool("T=\"T(\\d+)\""),
-        path(R"(FGROUP\(.*\)|FGREF\[[ABC]\]=\S+)"), turn(R"(ROT Z=(.*))"), zero(R"(TRANS ([ABC])=(.*))");
+        path(R"x(FGROUP\(.*\)|FGREF\[[ABC]\]=\S+|WORKPIECE\(,"",,"(?:PIPE|CYLINDER)"(?:,[-0-9.]+)+\))x"),
+        turn(R"(ROT Z=(.*))"), zero(R"(TRANS ([ABC])=(.*))");
     if (std::string("GXYZABC").find(code[0]) != std::string::npos) {
       return words(code);
     } else if (matches(code, loop)) {
@@ -384,7 +385,7 @@ class HeidenhainWalker : public Walker {
         zero(R"(CYCL DEF 7\.1 ([ABC])(.*))"), jump(R"(FN 12: IF (.*) LT (.*) GOTO LBL (\d+))"),
         tool(R"(TOOL CALL (\d+) Z S\d+)"), other(R"(TOOL (?:CALL S|DEF )\d+)"), turn(R"(CYCL DEF 10\.1 ROT(.*))"),
         harmless(
-            R"(LBL \d+|PLANE RESET STAY|END PGM \S+ MM|M(?:0|1|3|5|7|8|9|126|127))"
+            R"(LBL \d+|PLANE RESET STAY|BLK FORM CYLINDER Z R[-+ .0-9LDISTR]+|END PGM \S+ MM|M(?:0|1|3|5|7|8|9|126|127))"
             R"(|CYCL DEF (?:7\.0 DATUM SHIFT|10\.0 ROTATION|247 DATUM SETTING Q339=\+1|32\.0 TOLERANCE|32\.1(?: T.*)?|32\.2 HSC-MODE:0 TA.*))");
     if (code[0] == 'L' && code[1] != 'B') {
       return straight(code);
