@@ -11,7 +11,7 @@ namespace toothpath::job {
 namespace {
 
 void read_tools(toml::TableReader& root, Job& job) {
-  const ToolContext context{job.bevel_gear(), std::filesystem::path(job.file).parent_path().string()};
+  const ToolContext context{job.bevel_gear(), job.directory()};
   for (auto& table : root.tables("tool", {1, SIZE_MAX})) {
     tool::ToolAssembly tool = read_tool(table, context, job.warnings);
     const auto same = [&](const tool::ToolAssembly& other) { return other.number == tool.number && tool.number > 0; };

@@ -4,6 +4,7 @@
 
 #include "app/job/words.h"
 #include "geometry/base/angle.h"
+#include "geometry/inspection/touches.h"
 #include "machines/toml/regular_file.h"
 
 namespace toothpath::job {
@@ -47,7 +48,7 @@ std::string measured_setup_text(const MeasuredSetup& measured, std::size_t touch
 }
 
 void take_measured(toml::TableReader& table, const std::string& name, Job& job, joints::Setup& setup) {
-  const auto path = (std::filesystem::path(job.file).parent_path() / name).string();
+  const auto path = (std::filesystem::path(job.directory()) / name).string();
   const auto text = toml::read_input_file(path, kMostBytes);
   if (!text) return table.refuse("measured", "measured = \"{}\": {}", name, text.error().message);
   const auto measured = parse_measured_setup(*text, name);
@@ -57,12 +58,12 @@ void take_measured(toml::TableReader& table, const std::string& name, Job& job, 
                         measured.error().message);
   }
   const Vec3 moved = measured->origin_mm - setup.origin_mm;
-  if (!(moved.norm() <= kFarthestMoved))
+  if (!(moved.norm() <= inspection::kFarthestMoved))
     return table.refuse("measured",
                         "measured = \"{}\": origin = [{:.3f}, {:.3f}, {:.3f}] lies {:.3f} mm from that of the job, at "
                         "most {:g} mm: another set-up or unit; state its origin in [setup]",
                         name, measured->origin_mm.x(), measured->origin_mm.y(), measured->origin_mm.z(), moved.norm(),
-                        kFarthestMoved);
+                        inspection::kFarthestMoved);
   const int teeth = std::visit([](const auto& gear) { return gear.teeth; }, job.gear);
   const double half_pitch = teeth > 0 ? kPi / teeth : kPi;
   if (!(std::abs(measured->clocking_rad) <= half_pitch))

@@ -12,9 +12,6 @@
 
 namespace toothpath::job {
 
-/// The origin may have moved by so much from that of the job, mm: a part that stands farther off is another set-up.
-inline constexpr double kFarthestMoved = 5;
-
 struct MeasuredSetup {
   Vec3 origin_mm = Vec3::Zero();  ///< of the gear frame, machine coordinates, all rotaries at zero
   double clocking_rad = 0;        ///< turn of the teeth about gear z

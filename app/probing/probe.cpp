@@ -68,13 +68,6 @@ std::vector<Diagnostic> read_inputs(const ProbeRequest& request, Inputs& in) {
   return {};
 }
 
-/// The line that selects the work offset on this control.
-std::string offset_line(const text::NcDialect& dialect, const joints::Setup& setup) {
-  if (dialect.datum != nullptr)
-    return fmt::format("CYCL DEF 247 DATUM SETTING Q339=+{}", dialect.datum(setup.work_offset));
-  return setup.work_offset;
-}
-
 CommandOutcome write_program(const ProbeRequest& request, const Inputs& in, app::OutputDir& output) {
   const auto dialect = controls::dialect_of(in.machine);
   if (!dialect) return app::failed(dialect.error());
@@ -82,7 +75,8 @@ CommandOutcome write_program(const ProbeRequest& request, const Inputs& in, app:
   ProbeProgram program;
   program.job_name = in.job.name;
   program.machine_name = in.machine.name;
-  program.work_offset = offset_line(*dialect, setup);
+  program.work_offset = setup.work_offset;
+  if (dialect->datum != nullptr) program.datum = dialect->datum(setup.work_offset);
   program.tool = request.tool.value_or(0);
   program.number = kProgramNumber;
   program.ball_diameter_mm = in.options.ball_diameter_mm;

@@ -22,10 +22,7 @@ Result<std::vector<inspection::TouchResult>> parse_touches(std::string_view text
     ++number;
     std::size_t at = 0;
     while (at < line.size() && (line[at] == ' ' || line[at] == '\t' || line[at] == '\r')) ++at;
-    const std::string_view begin = line.substr(at);
-    if (begin.empty() || begin.front() == '#' || begin.front() == '%' || begin.front() == ';' ||
-        begin.starts_with("//"))
-      continue;
+    if (inspection::is_comment(line.substr(at))) continue;
     double value[4] = {};
     int count = 0;
     inspection::TouchResult result;

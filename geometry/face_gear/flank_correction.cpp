@@ -11,21 +11,25 @@
 namespace toothpath::face_gear {
 namespace {
 
-constexpr int kLeastRows = 5, kLeastColumns = 9;
+constexpr int kLeastLevels = 5, kLeastPlaces = 9;  // along the profile, along the face
 
 struct Range {
   double low = INFINITY, high = -INFINITY;
+  Range() = default;
+  explicit Range(const std::vector<double>& values) {
+    for (const double v : values) add(v);
+  }
   void add(double v) {
     low = std::min(low, v);
     high = std::max(high, v);
   }
   [[nodiscard]] double middle() const { return 0.5 * (low + high); }
-  [[nodiscard]] double half() const { return 0.5 * (high - low); }
+  [[nodiscard]] double width() const { return high - low; }
+  [[nodiscard]] double half() const { return 0.5 * width(); }
 };
 
 // Points that stand on no grid.
 constexpr std::size_t kLeastPoints = 45;
-constexpr int kLeastLevels = 5, kLeastPlaces = 9;
 constexpr double kOneLevel = 0.01;  ///< of the whole spread: values closer than that are one level
 constexpr double kLeastCover = 0.5;
 constexpr double kWorstCondition = 1e4;
@@ -47,19 +51,8 @@ int levels_of(std::vector<double> values) {
   return levels;
 }
 
-struct Spread {
-  double low = INFINITY, high = -INFINITY;
-  explicit Spread(const std::vector<double>& values) {
-    for (const double v : values) {
-      low = std::min(low, v);
-      high = std::max(high, v);
-    }
-  }
-  [[nodiscard]] double width() const { return high - low; }
-};
-
 Status covered(const std::vector<double>& measured, const std::vector<double>& nominal, const char* what) {
-  const Spread have(measured), all(nominal);
+  const Range have(measured), all(nominal);
   if (have.width() >= kLeastCover * all.width()) return Ok{};
   return fail("the points cover {:.0f} % of the {}, at least {:.0f} % are needed", 100 * have.width() / all.width(),
               what, 100 * kLeastCover);
@@ -98,9 +91,9 @@ Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> poi
     columns.insert(p.column);
     radii.add(p.radius_mm);
   }
-  if (int(rows.size()) < kLeastRows || int(columns.size()) < kLeastColumns)
+  if (int(rows.size()) < kLeastLevels || int(columns.size()) < kLeastPlaces)
     return fail("{} rows x {} columns are too few to fit, at least {} x {} are needed", rows.size(), columns.size(),
-                kLeastRows, kLeastColumns);
+                kLeastLevels, kLeastPlaces);
   FlankCorrection f;
   f.theta_t_ = theta_t;
   f.r_mid_ = radii.middle();
@@ -194,9 +187,9 @@ Result<ScatteredFit> FlankCorrection::fit_scattered(std::span<const ScatteredDev
   }
   for (const auto& p : points) radii.push_back(p.radius_mm);
   if (const auto s = covered(radii, grid_radii, "face width"); !s) return s.error();
-  const Spread along(radii);
-  f.r_mid_ = 0.5 * (along.low + along.high);
-  f.r_half_ = 0.5 * along.width();
+  const Range along(radii);
+  f.r_mid_ = along.middle();
+  f.r_half_ = along.half();
   f.fit_top(nominal, top_row);  // the line of the tip is the grid's
   for (const auto& p : nominal) grid_profile.push_back(f.profile_at(p.theta, p.radius_mm));
   for (const auto& p : points) profile.push_back(f.profile_at(p.theta, p.radius_mm));
@@ -208,7 +201,7 @@ Result<ScatteredFit> FlankCorrection::fit_scattered(std::span<const ScatteredDev
   constexpr int kMost = int(modification::SmoothCurve::kMostTerms) - 1;
   f.profile_ = std::clamp(std::min(most.profile, kMost), 0, levels - 2);
   f.lead_ = std::clamp(std::min(most.lead, kMost), 0, places - 3);
-  return f.fit_teeth(points, Spread(profile).low, Spread(profile).high);
+  return f.fit_teeth(points, Range(profile).low, Range(profile).high);
 }
 
 /// One constant a tooth, one shape for all: the constants go first (each tooth less its own mean), then the shape.

@@ -10,7 +10,7 @@ namespace toothpath::inspection {
 namespace {
 
 constexpr int kSteps = 30;
-constexpr double kFarthest = 5, kStill = 1e-13;
+constexpr double kStill = 1e-13;
 
 /// A rigid motion of the gear: first the turn by the vector, then the way.
 struct Motion {
@@ -66,7 +66,7 @@ class Solver {
       }
       const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(J);
       const Eigen::VectorXd x = qr.solve(d);
-      if (!x.allFinite() || x.head(3).norm() > 10 * kFarthest) return {};
+      if (!x.allFinite() || x.head(3).norm() > 10 * kFarthestMoved) return {};
       out.motion.way += x.head(3);
       if (clocks_) out.motion.turn.z() += x[3];
       if (leans) out.motion.turn.head<2>() += x.tail(2);
@@ -151,11 +151,11 @@ Result<Placement> place_of_gear(const face_gear::FaceGear& gear, const TouchPlan
                                 const std::vector<TouchResult>& results, const std::string& file) {
   if (auto wrong = check_numbers(plan, results, file)) return *wrong;
   for (const auto& r : results)
-    if (const double off = (r.centre - plan.touches[std::size_t(r.number - 1)].centre).norm(); off > 2 * kFarthest)
+    if (const double off = (r.centre - plan.touches[std::size_t(r.number - 1)].centre).norm(); off > 2 * kFarthestMoved)
       return fail_at(r.at,
                      "touch {} lies {:.3f} mm from where the plan has it, at most {:g} mm: another part, frame or "
                      "unit",
-                     r.number, off, 2 * kFarthest);
+                     r.number, off, 2 * kFarthestMoved);
   const Solver solver(gear, plan, options, results);
   const auto upright = solver.solve(false, -1), leaning = solver.solve(true, -1);
   if (!upright || !leaning)
@@ -171,9 +171,9 @@ Result<Placement> place_of_gear(const face_gear::FaceGear& gear, const TouchPlan
   out.clocking_rad = upright->motion.turn.z();
   out.residual_mm = upright->worst;
   out.rms_mm = upright->rms;
-  if (out.moved_mm.norm() > kFarthest)
+  if (out.moved_mm.norm() > kFarthestMoved)
     return fail_at({file, 1, 1}, "the gear stands {:.3f} mm off its place, at most {:g} mm", out.moved_mm.norm(),
-                   kFarthest);
+                   kFarthestMoved);
   const bool clocks = upright->covariance.rows() > 3;
   const double n = double(results.size()), scatter = upright->rms * std::sqrt(n / (n - (clocks ? 4 : 3)));
   out.moved_sigma_mm = scatter * upright->covariance.diagonal().head(3).cwiseSqrt();

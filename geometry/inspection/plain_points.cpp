@@ -29,10 +29,6 @@ std::vector<Cell> cells_of(std::string_view line) {
   }
 }
 
-bool is_comment(std::string_view line) {
-  return line.empty() || line.front() == '#' || line.front() == '%' || line.front() == ';' || line.starts_with("//");
-}
-
 bool names_columns(const std::vector<Cell>& cells) {
   static constexpr std::array<std::string_view, 6> kNames = {"X", "Y", "Z", "I", "J", "K"};
   if (cells.size() != 3 && cells.size() != 6) return false;

@@ -20,6 +20,11 @@ inline std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+/// Of a trimmed line: empty, or a remark.
+inline bool is_comment(std::string_view line) {
+  return line.empty() || line.front() == '#' || line.front() == '%' || line.front() == ';' || line.starts_with("//");
+}
+
 inline std::string upper(std::string_view text) {
   std::string out(text);
   for (char& c : out)

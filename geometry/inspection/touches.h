@@ -66,6 +66,8 @@ struct Placement {
   double clocking_sigma_rad = 0;
 };
 
+/// A gear may stand so far off the place that the job states, mm: farther off it is another set-up.
+inline constexpr double kFarthestMoved = 5;
 /// A touch may lie so far off what all of them together say, mm.
 inline constexpr double kWorstTouch = 0.03;
 /// A lean of the axis may cost so much at the outer radius, mm: the program cannot follow it.

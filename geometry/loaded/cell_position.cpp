@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/loaded/carriers.h"
 #include "geometry/loaded/cell_contact.h"
 #include "geometry/loaded/half_space.h"
 #include "geometry/loaded/line_of_tooth.h"
@@ -420,26 +421,17 @@ Result<LoadedPosition> cell_position(const LoadedPair& pair, const Load& load, d
   out.stiffness = F / out.approach_mm;
   out.line_mm = cells.line_mm();
   out.residual = found->residual;
-  out.ring_force.assign(pair.rings.size(), 0.0);
-  out.pressure_radius_mm = 1e300;
+  Carriers carriers(pair, out);
   const auto forces = cells.forces(found->pressure);
   std::size_t at = 0;
-  std::vector<std::pair<int, double>> teeth;
   for (std::size_t w = 0; w < cells.windows().size(); ++w) {
     const ToothWindow& window = cells.windows()[w];
     add_rows(window, found->pressure.data() + at, out);
     at += window.cells.size();
-    if (!(forces[w] > 0)) continue;
-    for (std::size_t r = 0; r < pair.rings.size(); ++r)
-      if (pair.rings[r].ring == window.ring->ring) out.ring_force[r] += forces[w];
-    out.axial_n -= forces[w] * cells.axial_share(window);
-    out.pressure_radius_mm = std::min(out.pressure_radius_mm, 1 / window.middle.curvature);
-    const auto known = std::find_if(teeth.begin(), teeth.end(), [&](const auto& t) { return t.first == window.tooth; });
-    if (known == teeth.end()) teeth.emplace_back(window.tooth, forces[w]);
-    else known->second += forces[w];
+    if (forces[w] > 0)
+      carriers.add(window.ring->ring, window.tooth, forces[w], cells.axial_share(window), window.middle.curvature);
   }
-  out.pairs =
-      static_cast<int>(std::count_if(teeth.begin(), teeth.end(), [&](const auto& t) { return t.second > 1e-3 * F; }));
+  carriers.finish(F);
   constexpr double kMore = 0.01;  // of the load, for the tangent
   const auto more = cells.balanced(F * (1 + kMore));
   if (!more) return more.error();

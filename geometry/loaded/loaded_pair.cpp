@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/loaded/carriers.h"
 #include "geometry/loaded/cell_position.h"
 #include "geometry/loaded/half_space.h"
 
@@ -198,21 +199,14 @@ void describe(const LoadedPair& pair, const PositionProblem& problem, const Cont
   out.tangent = 1 / forces.yield(0, 0);
   out.line_mm = problem.line_mm();
   out.residual = problem.residual();
-  out.ring_force.assign(pair.rings.size(), 0.0);
-  out.pressure_radius_mm = 1e300;
-  std::vector<std::pair<int, double>> teeth;
+  Carriers carriers(pair, out);
   for (std::size_t k = 0; k < problem.places().size(); ++k) {
     const Segment& s = problem.places()[k];
     const double f = forces.force(static_cast<Eigen::Index>(k));
     out.segments.push_back(
         {s, f, f > 0 ? half_widths[k] : 0, f > 0 ? hertz_line(f / s.length, pair.modulus, s.curvature).pressure : 0});
     if (!(f > 0)) continue;
-    for (std::size_t r = 0; r < pair.rings.size(); ++r)
-      if (pair.rings[r].ring == s.ring) out.ring_force[r] += f;
-    out.axial_n -= f * problem.axial_share(s);
-    const auto known = std::find_if(teeth.begin(), teeth.end(), [&](const auto& t) { return t.first == s.tooth; });
-    if (known == teeth.end()) teeth.emplace_back(s.tooth, f);
-    else known->second += f;
+    carriers.add(s.ring, s.tooth, f, problem.axial_share(s), s.curvature);
     const double p = out.segments.back().pressure;
     if (s.at_end || s.beyond > 0) {
       out.end_pressure = std::max(out.end_pressure, p);
@@ -220,10 +214,8 @@ void describe(const LoadedPair& pair, const PositionProblem& problem, const Cont
     } else {
       out.pressure = std::max(out.pressure, p);
     }
-    out.pressure_radius_mm = std::min(out.pressure_radius_mm, 1 / s.curvature);
   }
-  out.pairs =
-      static_cast<int>(std::count_if(teeth.begin(), teeth.end(), [&](const auto& t) { return t.second > 1e-3 * F; }));
+  carriers.finish(F);
 }
 
 }  // namespace

@@ -7,17 +7,21 @@
 namespace toothpath::probing {
 namespace {
 
-constexpr int kFirstResult = 1600;  ///< Q parameters that are free for programs; four a touch
+constexpr int kFirstResult = 1600, kLastResult = 1999;  ///< Q parameters that are free for programs; four a touch
+constexpr std::size_t kMostTouches = (kLastResult - kFirstResult + 1) / 4;
 
 }  // namespace
 
-std::string touch_probe_probing(const ProbeProgram& program) {
+Result<std::string> touch_probe_probing(const ProbeProgram& program) {
+  if (program.touches.size() > kMostTouches)
+    return fail("{} touches, at most {}: Q{} to Q{} hold the results; fewer --spaces", program.touches.size(),
+                kMostTouches, kFirstResult, kLastResult);
   std::string out = "BEGIN PGM PROBE_SETUP MM\n";
   const auto add = [&](const std::string& line) { out += line + "\n"; };
   for (const auto& line : header(program)) add("; " + line);
   add("; RESULTS OF TOUCH N: Q1600 + 4 (N - 1) AND THE TWO BEHIND IT, TO BE TYPED AS N X Y Z");
   for (const char* line : {"PLANE RESET STAY", "FUNCTION RESET TCPM", "TRANS DATUM RESET"}) add(line);
-  add(program.work_offset);
+  add(fmt::format("CYCL DEF 247 DATUM SETTING Q339=+{}", program.datum));
   const std::string top = "L " + word('Z', program.top_mm, true) + " R0 FMAX M91";
   add(top);
   add(fmt::format("TOOL CALL {} Z", program.tool));

@@ -124,7 +124,7 @@ std::string fanuc_text(const ProbeProgram& program) {
 
 }  // namespace
 
-std::string g38_probing(const ProbeProgram& program) { return linuxcnc_text(program); }
-std::string g31_probing(const ProbeProgram& program) { return fanuc_text(program); }
+Result<std::string> g38_probing(const ProbeProgram& program) { return linuxcnc_text(program); }
+Result<std::string> g31_probing(const ProbeProgram& program) { return fanuc_text(program); }
 
 }  // namespace toothpath::probing

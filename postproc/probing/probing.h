@@ -21,7 +21,8 @@ struct ProbeTouch {
 
 struct ProbeProgram {
   std::string job_name, machine_name;
-  std::string work_offset;  ///< the line of the control that selects it
+  std::string work_offset;  ///< its name
+  int datum = 0;            ///< its number, on controls that know presets
   int tool = 0;
   int number = 0;                                    ///< of the program, where the control wants one
   double ball_diameter_mm = 0, probe_length_mm = 0;  ///< gauge line to the centre of the ball
@@ -35,10 +36,11 @@ struct ProbeProgram {
 
 /// The program as text of a control: ways to and from a touch stop where the probe meets something, a touch that meets
 /// nothing ends it, and every touch logs "number x y z".
-using ProbingWords = std::string (*)(const ProbeProgram& program);
-[[nodiscard]] std::string g38_probing(const ProbeProgram& program);          ///< G38.3, G38.2, LOG
-[[nodiscard]] std::string g31_probing(const ProbeProgram& program);          ///< G31, DPRNT
-[[nodiscard]] std::string meas_probing(const ProbeProgram& program);         ///< MEAS
-[[nodiscard]] std::string touch_probe_probing(const ProbeProgram& program);  ///< TCH PROBE
+/// Errors: more touches than the control has room for their results.
+using ProbingWords = Result<std::string> (*)(const ProbeProgram& program);
+[[nodiscard]] Result<std::string> g38_probing(const ProbeProgram& program);          ///< G38.3, G38.2, LOG
+[[nodiscard]] Result<std::string> g31_probing(const ProbeProgram& program);          ///< G31, DPRNT
+[[nodiscard]] Result<std::string> meas_probing(const ProbeProgram& program);         ///< MEAS
+[[nodiscard]] Result<std::string> touch_probe_probing(const ProbeProgram& program);  ///< TCH PROBE
 
 }  // namespace toothpath::probing

@@ -14,7 +14,7 @@ std::string assigned(const Vec3& place, int from, int count) {
 
 }  // namespace
 
-std::string meas_probing(const ProbeProgram& program) {
+Result<std::string> meas_probing(const ProbeProgram& program) {
   std::string out;
   const auto add = [&](const std::string& line) { out += line + "\n"; };
   for (const auto& line : header(program)) add("; " + line);

@@ -9,8 +9,8 @@ namespace toothpath::text {
 
 class NcPlaneWords {
  public:
-  NcPlaneWords(const joints::AxisProgram& program, const NcDialect& dialect, NcLines& out)
-      : program_(program), dialect_(dialect), out_(out) {}
+  NcPlaneWords(const joints::AxisProgram& program, const NcDialect& dialect, const NcAxisWords& words, NcLines& out)
+      : program_(program), dialect_(dialect), words_(words), out_(out) {}
 
   /// Some block of the list stands in a tilted plane.
   [[nodiscard]] bool any(const std::vector<joints::AxisBlock>& list) const;
@@ -20,12 +20,12 @@ class NcPlaneWords {
   void on(const joints::AxisBlock& b, IndexWord index, NcLines::Values& values);
 
  private:
-  [[nodiscard]] std::int64_t turn_word() const;
   [[nodiscard]] std::string angle(std::int64_t word) const;
   [[nodiscard]] std::string turn(const joints::AxisBlock& b, IndexWord index, NcLines::Values& values);
 
   const joints::AxisProgram& program_;
   const NcDialect& dialect_;
+  const NcAxisWords& words_;
   NcLines& out_;
 };
 

@@ -35,7 +35,7 @@ class Writer {
         corners_(corner_words(program, dialect, header)),
         out_(dialect),
         words_(program, dialect, out_),
-        planes_(program, dialect, out_),
+        planes_(program, dialect, words_, out_),
         clamps_(program, dialect, header.wishes.stops == Stops::teeth),
         tcp_(program.tcp != machines::TcpMode::none),
         zero_moves_(program.loop && !dialect.loop.zero_on.empty() && (!tcp_ || dialect.loop.zero_with_tcp)) {}

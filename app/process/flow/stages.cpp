@@ -109,9 +109,10 @@ class Attempts {
     const joints::AxisProgram& program = posted->axes;
     const std::string file = output_.final_path(posted->file);
     const std::vector<const path::ClPath*> asked = process::paths_to_meet(program, run_.paths());
-    const process::ProgramText whole{posted->text, file,
-                                     run_.job,     run_.machine,
-                                     &moves,       [&](const readback::ExecutedMove& move) { states.add(move); }};
+    const process::ProgramText whole{posted->text,  file,
+                                     run_.job,      run_.machine,
+                                     &moves,        [&](const readback::ExecutedMove& move) { states.add(move); },
+                                     request_.blank};
     auto proof = process::prove_program(
         whole,
         {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad},

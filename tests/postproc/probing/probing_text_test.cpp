@@ -150,6 +150,12 @@ TEST(ProbingText, EveryControlGoesDownTouchesGoesBackAndUp) {
   const auto none = controls::probing_text(p, "apt");
   ASSERT_FALSE(none);
   EXPECT_NE(none.error().message.find("dialect = \"apt\" has no words for a probe"), std::string::npos);
+  // Four Q parameters a touch, and 400 of them: more touches have no place for their results.
+  ProbeProgram many = p;
+  while (many.touches.size() < 101) many.touches.push_back(p.touches.front());
+  EXPECT_EQ(controls::probing_text(many, "heidenhain").error().message,
+            "101 touches, at most 100: Q1600 to Q1999 hold the results; fewer --spaces");
+  EXPECT_TRUE(controls::probing_text(many, "fanuc"));
 }
 
 TEST(ProbingTextLinuxcnc, TheInterpreterProbesThePlannedPlaces) {
