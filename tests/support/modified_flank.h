@@ -9,6 +9,17 @@
 
 namespace toothpath::test {
 
+[[nodiscard]] inline modification::Modification modification_of(modification::Kind kind, double amount_mm,
+                                                                double length_mm = 0,
+                                                                modification::Law law = modification::Law::parabolic) {
+  modification::Modification m;
+  m.kind = kind;
+  m.amount_mm = amount_mm;
+  m.length_mm = length_mm;
+  m.law = law;
+  return m;
+}
+
 /// Taken at depth y and place x along a face from `from` to `to`; `depth` is that of the active flank. mm
 template <typename S>
 S taken_by_the_words(const modification::Modification& m, const S& y, const S& x, double depth, double from,

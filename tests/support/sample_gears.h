@@ -82,4 +82,11 @@ inline face_gear::FaceGear made(const face_gear::FaceGearParameters& parameters)
   return std::move(gear).value();
 }
 
+/// small_spur() with modified flanks.
+inline face_gear::FaceGear modified_spur(const std::vector<modification::Modification>& modifications = {}) {
+  auto g = small_spur();
+  g.modifications = modifications;
+  return made(g);
+}
+
 }  // namespace toothpath::test

@@ -24,15 +24,6 @@ using modification::Law;
 using modification::Modification;
 using F50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
-Modification of(Kind kind, double amount, double length = 0, Law law = Law::parabolic) {
-  Modification m;
-  m.kind = kind;
-  m.amount_mm = amount;
-  m.length_mm = length;
-  m.law = law;
-  return m;
-}
-
 constexpr modification::Rectangle kOn{4, 60, 65};
 
 double removed(const Modification& m, double depth, double along, int side = 1, int zone = 0) {
@@ -40,20 +31,21 @@ double removed(const Modification& m, double depth, double along, int side = 1, 
 }
 
 TEST(Modification, EveryKindIsWhatItsWordsSay) {
-  EXPECT_DOUBLE_EQ(removed(of(Kind::tip_relief, 0.02, 1), 0, 61), 0.02);
-  EXPECT_DOUBLE_EQ(removed(of(Kind::tip_relief, 0.02, 1), 0.5, 61), 0.005);
-  EXPECT_DOUBLE_EQ(removed(of(Kind::tip_relief, 0.02, 1), 1, 61), 0);
-  EXPECT_DOUBLE_EQ(removed(of(Kind::root_relief, 0.02, 1), 4, 61), 0.02);
-  EXPECT_DOUBLE_EQ(removed(of(Kind::root_relief, 0.02, 1), 2, 61), 0);
-  EXPECT_NEAR(removed(of(Kind::root_relief, 0.02, 1), 4.5, 61), 0.04, 1e-16);  // the tangent beyond the end
-  auto linear = of(Kind::tip_relief, 0.02, 1, Law::linear);
+  EXPECT_DOUBLE_EQ(removed(modification_of(Kind::tip_relief, 0.02, 1), 0, 61), 0.02);
+  EXPECT_DOUBLE_EQ(removed(modification_of(Kind::tip_relief, 0.02, 1), 0.5, 61), 0.005);
+  EXPECT_DOUBLE_EQ(removed(modification_of(Kind::tip_relief, 0.02, 1), 1, 61), 0);
+  EXPECT_DOUBLE_EQ(removed(modification_of(Kind::root_relief, 0.02, 1), 4, 61), 0.02);
+  EXPECT_DOUBLE_EQ(removed(modification_of(Kind::root_relief, 0.02, 1), 2, 61), 0);
+  EXPECT_NEAR(removed(modification_of(Kind::root_relief, 0.02, 1), 4.5, 61), 0.04,
+              1e-16);  // the tangent beyond the end
+  auto linear = modification_of(Kind::tip_relief, 0.02, 1, Law::linear);
   linear.transition_mm = 0.2;
   EXPECT_DOUBLE_EQ(removed(linear, 0, 61), 0.02);
   EXPECT_DOUBLE_EQ(removed(linear, 0.5, 61), 0.01);
   EXPECT_NEAR(removed(linear, 0.9, 61), 0.002, 1e-17);
   EXPECT_NEAR(removed(linear, 1, 61), 0.02 * 0.2 / 8, 1e-17);  // the rounded kink
   EXPECT_DOUBLE_EQ(removed(linear, 1.1, 61), 0);
-  auto end = of(Kind::end_relief, 0.03, 2);
+  auto end = modification_of(Kind::end_relief, 0.03, 2);
   for (const double x : {60.0, 65.0}) EXPECT_NEAR(removed(end, 1, x), 0.03, 1e-15);
   EXPECT_DOUBLE_EQ(removed(end, 1, 62.5), 0);
   end.ends = Ends::outer;
@@ -63,29 +55,30 @@ TEST(Modification, EveryKindIsWhatItsWordsSay) {
   EXPECT_NEAR(removed(end, 1, 61), 0.0075, 1e-15);
   EXPECT_DOUBLE_EQ(removed(end, 1, 65), 0);
   for (const double y : {0.0, 4.0}) {
-    EXPECT_DOUBLE_EQ(removed(of(Kind::profile_crowning, 0.01), y, 61), 0.01);
-    EXPECT_NEAR(removed(of(Kind::profile_crowning, -0.01), y, 61), 0, 1e-17);
+    EXPECT_DOUBLE_EQ(removed(modification_of(Kind::profile_crowning, 0.01), y, 61), 0.01);
+    EXPECT_NEAR(removed(modification_of(Kind::profile_crowning, -0.01), y, 61), 0, 1e-17);
   }
-  EXPECT_DOUBLE_EQ(removed(of(Kind::profile_crowning, 0.01), 2, 61), 0);
-  EXPECT_DOUBLE_EQ(removed(of(Kind::profile_crowning, -0.01), 2, 61), 0.01);
-  for (const double x : {60.0, 65.0}) EXPECT_NEAR(removed(of(Kind::lead_crowning, 0.01), 1, x), 0.01, 1e-15);
-  EXPECT_NEAR(removed(of(Kind::lead_crowning, 0.01), 1, 62.5), 0, 1e-17);
-  EXPECT_DOUBLE_EQ(removed(of(Kind::pressure_angle_slope, 0.01), 0, 61), 0.01);
-  EXPECT_NEAR(removed(of(Kind::pressure_angle_slope, 0.01), 4, 61), 0, 1e-17);
-  EXPECT_DOUBLE_EQ(removed(of(Kind::pressure_angle_slope, -0.01), 4, 61), 0.01);
-  EXPECT_NEAR(removed(of(Kind::helix_angle_slope, 0.01), 1, 65), 0.01, 1e-15);
-  EXPECT_NEAR(removed(of(Kind::helix_angle_slope, 0.01), 1, 60), 0, 1e-15);
-  EXPECT_NEAR(removed(of(Kind::helix_angle_slope, -0.01), 1, 60), 0.01, 1e-15);
-  const auto twist = of(Kind::twist, 0.01);
+  EXPECT_DOUBLE_EQ(removed(modification_of(Kind::profile_crowning, 0.01), 2, 61), 0);
+  EXPECT_DOUBLE_EQ(removed(modification_of(Kind::profile_crowning, -0.01), 2, 61), 0.01);
+  for (const double x : {60.0, 65.0})
+    EXPECT_NEAR(removed(modification_of(Kind::lead_crowning, 0.01), 1, x), 0.01, 1e-15);
+  EXPECT_NEAR(removed(modification_of(Kind::lead_crowning, 0.01), 1, 62.5), 0, 1e-17);
+  EXPECT_DOUBLE_EQ(removed(modification_of(Kind::pressure_angle_slope, 0.01), 0, 61), 0.01);
+  EXPECT_NEAR(removed(modification_of(Kind::pressure_angle_slope, 0.01), 4, 61), 0, 1e-17);
+  EXPECT_DOUBLE_EQ(removed(modification_of(Kind::pressure_angle_slope, -0.01), 4, 61), 0.01);
+  EXPECT_NEAR(removed(modification_of(Kind::helix_angle_slope, 0.01), 1, 65), 0.01, 1e-15);
+  EXPECT_NEAR(removed(modification_of(Kind::helix_angle_slope, 0.01), 1, 60), 0, 1e-15);
+  EXPECT_NEAR(removed(modification_of(Kind::helix_angle_slope, -0.01), 1, 60), 0.01, 1e-15);
+  const auto twist = modification_of(Kind::twist, 0.01);
   EXPECT_NEAR(removed(twist, 0, 65), 0.01, 1e-15);
   EXPECT_NEAR(removed(twist, 4, 60), 0.01, 1e-15);
   EXPECT_NEAR(removed(twist, 0, 60), 0, 1e-15);
   EXPECT_NEAR(removed(twist, 4, 65), 0, 1e-15);
-  EXPECT_NEAR(removed(of(Kind::twist, -0.01), 0, 60), 0.01, 1e-15);
+  EXPECT_NEAR(removed(modification_of(Kind::twist, -0.01), 0, 60), 0.01, 1e-15);
 }
 
 TEST(Modification, FlanksAndZonesAreChosen) {
-  auto m = of(Kind::tip_relief, 0.02, 1);
+  auto m = modification_of(Kind::tip_relief, 0.02, 1);
   m.flanks = Flanks::right;
   EXPECT_GT(removed(m, 0, 61, 1), 0);
   EXPECT_EQ(removed(m, 0, 61, -1), 0);
@@ -95,11 +88,12 @@ TEST(Modification, FlanksAndZonesAreChosen) {
   m.zone = 1;
   EXPECT_EQ(removed(m, 0, 61, -1, 0), 0);
   EXPECT_GT(removed(m, 0, 61, -1, 1), 0);
-  EXPECT_TRUE(modification::Field({of(Kind::tip_relief, 0, 1), of(Kind::twist, 0)}, 1, 0, kOn).empty());
+  EXPECT_TRUE(modification::Field({modification_of(Kind::tip_relief, 0, 1), modification_of(Kind::twist, 0)}, 1, 0, kOn)
+                  .empty());
 }
 
 TEST(Modification, AGridGoesThroughItsValuesAndIsSmooth) {
-  Modification m = of(Kind::grid, 1);
+  Modification m = modification_of(Kind::grid, 1);
   m.grid = modification::Grid{{0, 1, 2.5, 4}, {60, 61, 63, 64, 65}, {}};
   for (const double y : m.grid->depth_mm)
     for (const double x : m.grid->along_mm) m.grid->removal_mm.push_back(0.01 * std::sin(y) * std::cos(0.7 * x));
@@ -121,21 +115,21 @@ TEST(Modification, AGridGoesThroughItsValuesAndIsSmooth) {
 
 /// All kinds at once, 10 um each.
 std::vector<Modification> all_kinds(double depth, double from, double to) {
-  auto linear = of(Kind::tip_relief, 0.012, 0.3 * depth, Law::linear);
-  auto end = of(Kind::end_relief, 0.01, 0.2 * (to - from), Law::linear);
+  auto linear = modification_of(Kind::tip_relief, 0.012, 0.3 * depth, Law::linear);
+  auto end = modification_of(Kind::end_relief, 0.01, 0.2 * (to - from), Law::linear);
   end.transition_mm = 0.1 * (to - from);
-  auto left = of(Kind::twist, -0.008);
+  auto left = modification_of(Kind::twist, -0.008);
   left.flanks = Flanks::left;
-  Modification grid = of(Kind::grid, 1);
+  Modification grid = modification_of(Kind::grid, 1);
   grid.grid = modification::Grid{{0, 0.4 * depth, depth}, {from, 0.5 * (from + to), to}, {}};
   for (int k = 0; k < 9; ++k) grid.grid->removal_mm.push_back(0.003 * ((k * 7) % 5));
   return {linear,
-          of(Kind::root_relief, 0.009, 0.25 * depth),
+          modification_of(Kind::root_relief, 0.009, 0.25 * depth),
           end,
-          of(Kind::profile_crowning, 0.006),
-          of(Kind::lead_crowning, -0.01),
-          of(Kind::pressure_angle_slope, 0.005),
-          of(Kind::helix_angle_slope, -0.007),
+          modification_of(Kind::profile_crowning, 0.006),
+          modification_of(Kind::lead_crowning, -0.01),
+          modification_of(Kind::pressure_angle_slope, 0.005),
+          modification_of(Kind::helix_angle_slope, -0.007),
           left,
           grid};
 }
@@ -255,36 +249,36 @@ TEST(ModifiedFlank, FilletAndRootJoinSmoothlyAndTheFootIsFound) {
 
 TEST(ModifiedFlank, NothingModifiedIsThePlainGear) {
   auto p = small_spur();
-  p.modifications = {of(Kind::tip_relief, 0, 1), of(Kind::twist, 0)};
+  p.modifications = {modification_of(Kind::tip_relief, 0, 1), modification_of(Kind::twist, 0)};
   EXPECT_EQ(made(p).rings()[0].modification, nullptr);
 }
 
 TEST(ModifiedFlank, WhatDoesNotFitIsRefusedWithItsLimit) {
   const auto refusal = [](const Modification& m) {
     auto p = small_spur();
-    p.modifications = {of(Kind::lead_crowning, 0.01), m};
+    p.modifications = {modification_of(Kind::lead_crowning, 0.01), m};
     auto gear = face_gear::FaceGear::make(p);
     return gear.refused() ? gear.refused()->front().key + ": " + gear.refused()->front().diagnostic.message
                           : std::string("accepted");
   };
-  EXPECT_EQ(refusal(of(Kind::tip_relief, 0.01, 5)),
+  EXPECT_EQ(refusal(modification_of(Kind::tip_relief, 0.01, 5)),
             "modification[1].length: length = 5 mm is not above 0 and at most 4 mm, the depth of the active flank");
-  EXPECT_EQ(refusal(of(Kind::end_relief, 0.01, 3)),
+  EXPECT_EQ(refusal(modification_of(Kind::end_relief, 0.01, 3)),
             "modification[1].length: length = 3 mm is not above 0 and at most 2.5 mm, half the face, as both ends are "
             "relieved");
-  EXPECT_EQ(refusal(of(Kind::twist, 0.5)),
+  EXPECT_EQ(refusal(modification_of(Kind::twist, 0.5)),
             "modification[1].amount: amount = 0.5 mm exceeds a tenth of the depth of the flank, 0.4 mm");
-  EXPECT_EQ(refusal(of(Kind::tip_relief, -0.01, 1)),
+  EXPECT_EQ(refusal(modification_of(Kind::tip_relief, -0.01, 1)),
             "modification[1].amount: amount = -0.01 mm is below 0: a relief takes material");
-  auto zone = of(Kind::twist, 0.01);
+  auto zone = modification_of(Kind::twist, 0.01);
   zone.zone = 1;
   EXPECT_EQ(refusal(zone), "modification[1].zone: zone = 1 is not below 1, the number of zones");
-  EXPECT_NE(refusal(of(Kind::tip_relief, 0.2, 1)).find("limit 0.1: a longer length"), std::string::npos)
-      << refusal(of(Kind::tip_relief, 0.2, 1));
+  EXPECT_NE(refusal(modification_of(Kind::tip_relief, 0.2, 1)).find("limit 0.1: a longer length"), std::string::npos)
+      << refusal(modification_of(Kind::tip_relief, 0.2, 1));
   auto pointed = small_spur();
   pointed.zones = {{0, 60, 68.5}};
   ASSERT_TRUE(face_gear::FaceGear::make(pointed).value_if());
-  pointed.modifications = {of(Kind::pressure_angle_slope, 0.39)};
+  pointed.modifications = {modification_of(Kind::pressure_angle_slope, 0.39)};
   auto gear = face_gear::FaceGear::make(pointed);
   ASSERT_TRUE(gear.refused());
   EXPECT_EQ(gear.refused()->front().key, "modification");

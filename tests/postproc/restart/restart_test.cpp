@@ -32,22 +32,7 @@ std::string joined(const std::vector<std::string>& lines, bool numbered) {
   return out;
 }
 
-struct RestartCase {
-  PostForm form;
-  int stride;
-};
-void PrintTo(const RestartCase& c, std::ostream* out) {
-  PrintTo(c.form, out);
-  *out << "_stride" << c.stride;
-}
-std::vector<RestartCase> restart_cases() {
-  std::vector<RestartCase> out;
-  for (const auto& f : post_forms())
-    for (const int stride : {1, 2}) out.push_back({f, stride});
-  return out;
-}
-
-class Restart : public testing::TestWithParam<RestartCase> {
+class Restart : public testing::TestWithParam<OrderedForm> {
  protected:
   void SetUp() override {
     const PostForm& f = GetParam().form;
@@ -72,7 +57,7 @@ class Restart : public testing::TestWithParam<RestartCase> {
   std::string whole;
   readback::NcControl control;
 };
-INSTANTIATE_TEST_SUITE_P(Forms, Restart, testing::ValuesIn(restart_cases()));
+INSTANTIATE_TEST_SUITE_P(Forms, Restart, testing::ValuesIn(ordered_forms()));
 
 TEST_P(Restart, WrittenProgramMakesTheLastMoves) {
   const bool numbered = std::string(GetParam().form.dialect) == "heidenhain";

@@ -113,4 +113,20 @@ inline Result<text::NcText> text_of(const PostForm& f, const joints::AxisProgram
   return write_nc(program, *controls::dialect_of(machine_of(f)), header);
 }
 
+/// A form with its teeth in sequence, or spread.
+struct OrderedForm {
+  PostForm form;
+  int stride = 1;
+};
+inline void PrintTo(const OrderedForm& c, std::ostream* out) {
+  PrintTo(c.form, out);
+  *out << "_stride" << c.stride;
+}
+inline std::vector<OrderedForm> ordered_forms() {
+  std::vector<OrderedForm> out;
+  for (const auto& f : post_forms())
+    for (const int stride : {1, 2}) out.push_back({f, stride});
+  return out;
+}
+
 }  // namespace toothpath::test
