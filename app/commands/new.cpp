@@ -4,14 +4,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "app/base/dialog.h"
+#include "app/base/new_file.h"
 #include "app/commands/run.h"
 #include "app/commands/shaper.h"
 #include "app/job/file.h"
@@ -156,28 +155,8 @@ class TemporaryFolder {
   std::string path_;
 };
 
-/// The job before it has its name: beside where it will stand, so that what it names is found.
-class UnnamedJob {
- public:
-  explicit UnnamedJob(const std::string& file) : path_(fmt::format("{}.{}.part", file, ::getpid())) {}
-  ~UnnamedJob() { ::unlink(path_.c_str()); }
-  UnnamedJob(const UnnamedJob&) = delete;
-  UnnamedJob& operator=(const UnnamedJob&) = delete;
-  [[nodiscard]] const std::string& path() const { return path_; }
-
-  bool write(const std::string& text) const {
-    std::ofstream out(path_, std::ios::binary);
-    out << text;
-    out.close();
-    return !out.fail();
-  }
-
- private:
-  std::string path_;
-};
-
 /// The job as `run` or `shaper` finds it.
-CommandOutcome prove(const UnnamedJob& job, const std::string& text, bool shaped, bool quiet) {
+CommandOutcome prove(const app::UnnamedFile& job, const std::string& text, bool shaped, bool quiet) {
   const TemporaryFolder folder;
   if (folder.path().empty())
     return failed(Diagnostic{DiagnosticKind::file_access, {}, "no temporary folder can be written"});
@@ -187,18 +166,6 @@ CommandOutcome prove(const UnnamedJob& job, const std::string& text, bool shaped
   request.out_dir = folder.path() + "/out";
   request.quiet = quiet;
   return shaped ? run_shaper(request) : run_job(request);
-}
-
-/// Under its name at once, and never over another file.
-DoneOrErrors write_job(const std::string& file, const std::string& text) {
-  const auto fail = [&](const std::string& why) {
-    return std::vector{Diagnostic{DiagnosticKind::file_access, {file, 0, 0}, why}};
-  };
-  const UnnamedJob job(file);
-  if (!job.write(text)) return fail("cannot be written");
-  if (::link(job.path().c_str(), file.c_str()) != 0)
-    return fail(errno == EEXIST ? "exists already, and is not replaced" : "cannot be written");
-  return Ok{};
 }
 
 struct Proposed {
@@ -238,7 +205,7 @@ Expected<Proposed, std::vector<Diagnostic>> propose(const NewRequest& request, c
   std::optional<Proposed> last;
   std::vector<Diagnostic> refused;
   const bool shaped = choice.wishes.route == proposal::Route::shaped;
-  const UnnamedJob job(request.file);
+  const app::UnnamedFile job(request.file);
   for (int attempt = 0; attempt < proposal::kAttempts; ++attempt) {
     auto draft = proposal::draft_of(request.name, choice.wishes, choice.machine, choice.gear, choice.shelf, attempt);
     if (!draft) {
@@ -469,8 +436,7 @@ CommandOutcome run_new(const NewRequest& asked) {
   proposal::Told limits = limits_of(choice.wishes);
   for (const auto& more : {limits_of(choice.gear), limits_of(proposed.value().draft, choice.machine, choice.gear)})
     limits.insert(limits.end(), more.begin(), more.end());
-  if (auto written = write_job(request.file, proposed.value().text); auto* errors = written.refused())
-    return failed(std::move(*errors));
+  if (auto written = app::write_new_file(request.file, proposed.value().text); !written) return failed(written.error());
   return told(request, proposed.value(), limits);
 }
 
