@@ -12,6 +12,7 @@
 #include "geometry/base/angle.h"
 #include "geometry/bevel_gear/forces.h"
 #include "geometry/bevel_gear/limits.h"
+#include "geometry/bevel_gear/modified_walls.h"
 
 namespace toothpath::commands {
 namespace {
@@ -56,6 +57,7 @@ nlohmann::ordered_json json_of(const sheet::JudgedCutter& cutter) {
                                 {"C", {c.x_C, c.rho_C}},
                                 {"D", {c.x_D, c.rho_D}},
                                 {"usable", j.usable()}};
+  if (c.law) out["modified"] = true;
   auto& conditions = out["conditions"] = nlohmann::ordered_json::array();
   const char* verdicts[] = {"met", "remark", "broken"};
   for (const auto& k : j.conditions)
@@ -116,8 +118,9 @@ std::vector<sheet::JudgedCutter> judge_mills(const bevel_gear::BevelGear& gear, 
     mills.push_back({fmt::format("tool {} of {}", tool.number, other->name),
                      judge_finger_profile(gear, d,
                                           bevel_gear::make_finger_profile<double>(
-                                              p.pressure_angle_rad, kappa_v, p.dedendum_mm, d.module_mm,
-                                              d.tip_radius_mm, d.rack_depth_mm, d.profile_height_mm))});
+                                              {p.pressure_angle_rad, kappa_v, p.dedendum_mm, d.module_mm,
+                                               d.tip_radius_mm, d.rack_depth_mm, d.profile_height_mm},
+                                              bevel_gear::profile_law(p)))});
   }
   return mills;
 }

@@ -161,12 +161,13 @@ ExactComparison exact_bevel_point(const bevel_gear::BevelGear& gear, const bevel
   const auto& c = wall.cutter;
   bevel_gear::BevelWall<Exact> x;
   x.sigma = wall.sigma;
-  x.trace = {Exact(t.R_0), Exact(t.sin_delta), Exact(t.cos_delta), Exact(t.beta_ref), Exact(t.r_0), Exact(t.e_h),
-             t.h,          Exact(t.beta_end)};
+  x.trace = {Exact(t.R_0), Exact(t.sin_delta), Exact(t.cos_delta),    Exact(t.beta_ref), Exact(t.r_0), Exact(t.e_h),
+             t.h,          Exact(t.beta_end),  {t.lead[0], t.lead[1]}};
   const bevel_gear::FingerCutterData& data = gear.cutter_data();
-  x.cutter = bevel_gear::make_finger_profile<Exact>(Exact(c.alpha_n), Exact(c.kappa_v), Exact(c.h_f),
-                                                    Exact(data.module_mm), Exact(data.tip_radius_mm),
-                                                    Exact(data.rack_depth_mm), Exact(data.profile_height_mm));
+  x.cutter = bevel_gear::make_finger_profile<Exact>(
+      {Exact(c.alpha_n), Exact(c.kappa_v), Exact(c.h_f), Exact(data.module_mm), Exact(data.tip_radius_mm),
+       Exact(data.rack_depth_mm), Exact(data.profile_height_mm)},
+      c.law);
   const auto q = wall.point(beta, p);
   const auto e = x.point(Exact(beta), Exact(p));
   return {gap(e.p, q.p), gap(e.n, q.n), 0, 0, 0};

@@ -6,6 +6,7 @@
 
 #include "cam/finger/reference.h"
 #include "geometry/base/angle.h"
+#include "geometry/bevel_gear/convex_corner.h"
 
 namespace toothpath::finger {
 namespace {
@@ -158,18 +159,7 @@ double crown_distance(const Centre& a, const Centre& b) {
 }
 
 bevel_gear::CutterCentre<double> corner_arc(const bevel_gear::BevelGear& gear, double t) {
-  const int sigma = -gear.corner().sigma;
-  const double R_J = gear.R_ref(), r_0 = gear.cutter().r_0, beta_J = trace_of(gear, 0).beta(R_J);
-  const double corner = -sigma * gear.e_h() * gear.sin_delta();
-  // Direction from the corner of the trace to the centre, measured from the ray through it.
-  const double direction = sigma * (kPi / 2 + beta_J * (1 - 2 * t));
-  const double turn = std::atan2(r_0 * std::sin(direction), R_J + r_0 * std::cos(direction));
-  Centre c;
-  c.R_c = std::hypot(R_J + r_0 * std::cos(direction), r_0 * std::sin(direction));
-  c.theta_c = corner + turn;
-  c.e = c.theta_c / gear.sin_delta();
-  c.beta_c = direction - sigma * kPi / 2 - turn;
-  return c;
+  return bevel_gear::ConvexCorner(gear).at(t);
 }
 
 std::vector<CentrePass> roughing_passes(const bevel_gear::BevelGear& gear, double ridge_mm, double& predicted_mm) {
@@ -212,7 +202,7 @@ std::vector<CentrePass> wall_passes(const bevel_gear::BevelGear& gear, bool clim
       passes.push_back(std::move(outer));
     } else if (gear.herringbone()) {
       add_wall(gear, 0, sigma, pass);
-      pass.pieces.push_back({1, [gear](double t) { return corner_arc(gear, t); }});
+      pass.pieces.push_back({1, [corner = bevel_gear::ConvexCorner(gear)](double t) { return corner.at(t); }});
       add_wall(gear, 1, sigma, pass);
     } else {
       add_wall(gear, 0, sigma, pass);

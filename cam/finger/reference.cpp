@@ -12,6 +12,7 @@ constexpr int kNodes = 240;
 constexpr int kEdgePoints = 2048;
 constexpr double kClear = 1e9;           // "no tooth in reach"
 constexpr int kEngagedProfile = 64;      // places of the profile at which the end of the engagement is looked for
+constexpr double kBesideJoint = 1e-6;    // mm: where the bend of a modified path is looked at on both sides of a jump
 constexpr double kEngagedMargin = 0.01;  // of the cutter's radius: what the contact may reach between them
 
 /// dR_c/dbeta on the path of a wall.
@@ -94,8 +95,9 @@ WallReference::WallReference(const bevel_gear::BevelGear& gear, int sigma)
       c.beta.push_back(beta);
       c.R_c.push_back(c.trace.centre(sigma, beta).R_c);
       if (!c.trace.straight(sigma, beta))
-        curvature_ = std::max(curvature_, std::abs(c.trace.kappa(beta) / c.trace.speed_ratio(sigma, beta)));
+        curvature_ = std::max(curvature_, std::abs(c.trace.turn(sigma, beta) / c.trace.speed_ratio(sigma, beta)));
     }
+    curvature_ = std::max(curvature_, curvature_at_joints(c));
     halves_.push_back(std::move(c));
   }
   end_ = halves_.back().trace.centre(sigma, halves_.back().beta.back());
@@ -107,7 +109,8 @@ WallReference::WallReference(const bevel_gear::BevelGear& gear, int sigma)
       corner_theta_ = -sigma * gear.e_h() * gear.sin_delta();
       arc_from_ = halves_[0].R_c.back();
       arc_to_ = halves_[1].R_c.front();
-      curvature_ = std::max(curvature_, 1 / r_0_);
+      corner_.emplace(gear);
+      curvature_ = std::max(curvature_, 1 / corner_->least_radius());
     }
   }
   engaged_from_ = first_engaged(gear, sigma, halves_.front());
@@ -125,6 +128,20 @@ double WallReference::first_engaged(const bevel_gear::BevelGear& gear, int sigma
       if (at[1] > high) break;
     }
   return first.R_c.back();
+}
+
+double WallReference::curvature_at_joints(const Curve& c) const {
+  double most = 0;
+  const auto* law = c.trace.lead_of(sigma_);
+  if (!law) return most;
+  for (const auto& curve : law->removed.curves)
+    for (const double R : curve.knots())
+      for (const double side : {-kBesideJoint, kBesideJoint}) {
+        const double beta = c.trace.beta(R + side);
+        if (!c.trace.straight(sigma_, beta) && beta > 0)
+          most = std::max(most, std::abs(c.trace.turn(sigma_, beta) / c.trace.speed_ratio(sigma_, beta)));
+      }
+  return most;
 }
 
 std::size_t WallReference::half_of(double R_c) const {
@@ -158,6 +175,8 @@ bevel_gear::CutterCentre<double> WallReference::place_at(double R_c) const {
     c.R_c = R_c;
     c.beta_c = std::asin(end_.R_c * std::sin(end_.beta_c) / R_c);
     c.theta_c = end_.theta_c + end_.beta_c - c.beta_c;
+  } else if (convex_ && R_c > arc_from_ && R_c < arc_to_ && !corner_->plain()) {
+    c = corner_->at(corner_->share_at(R_c));
   } else if (convex_ && R_c > arc_from_ && R_c < arc_to_) {
     const double turn =
         sigma_ *
@@ -207,11 +226,7 @@ double WallReference::offset(double R_c, double theta) const {
     const double u = R_c * std::cos(turn) - end_.R_c, v = R_c * std::sin(turn);
     return sigma_ * (v * std::cos(end_.beta_c) - u * std::sin(end_.beta_c));
   }
-  if (convex_ && R_c > arc_from_ && R_c < arc_to_) {
-    const double turn = theta - corner_theta_;
-    const double distance = std::hypot(R_c * std::cos(turn) - corner_R_, R_c * std::sin(turn));
-    return (turn * sigma_ > 0 ? distance : -distance) - r_0_;
-  }
+  if (convex_ && R_c > arc_from_ && R_c < arc_to_) { return corner_->offset(R_c, theta); }
   const auto at = on_curve(halves_[half_of(R_c)], R_c);
   return sigma_ * (theta - at.theta_c) * R_c * std::cos(at.beta_c);
 }

@@ -5,9 +5,11 @@
 // the bounds between samples rest on. Proof: docs/bevel_gear.md, section 9.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "cam/path/tool_motion.h"
+#include "geometry/bevel_gear/convex_corner.h"
 #include "geometry/bevel_gear/gear.h"
 
 namespace toothpath::finger {
@@ -61,6 +63,8 @@ class WallReference {
     std::vector<double> R_c, beta;  // nodes, R_c ascending
   };
   [[nodiscard]] bevel_gear::CutterCentre<double> on_curve(const Curve& curve, double R_c) const;
+  /// Largest where the bend of a modified path jumps.
+  [[nodiscard]] double curvature_at_joints(const Curve& curve) const;
   [[nodiscard]] std::size_t half_of(double R_c) const;
   [[nodiscard]] static double first_engaged(const bevel_gear::BevelGear& gear, int sigma, const Curve& first);
 
@@ -82,6 +86,7 @@ class WallReference {
   bevel_gear::CutterCentre<double> end_;  // start of the straight run-out
   // Convex corner of a herringbone: arc of radius r_0 about the trace's corner.
   bool convex_ = false;
+  std::optional<bevel_gear::ConvexCorner> corner_;
   double corner_R_ = 0, corner_theta_ = 0, r_0_ = 0, arc_from_ = 0, arc_to_ = 0;
   double split_ = 0;  // R_c of the crossing on the concave side
 };

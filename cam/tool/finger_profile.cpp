@@ -24,8 +24,8 @@ MeridianPiece through(const Vec2& a, const Vec2& b, const Vec2& c) {
 }
 
 /// Arcs from p0 to p1, halved until the quarter points lie within the sag.
-void involute_arcs(const bevel_gear::FingerProfile<double>& c, double p0, double p1, double sag_mm,
-                   std::vector<MeridianPiece>& out) {
+void flank_arcs(const bevel_gear::FingerProfile<double>& c, double p0, double p1, double sag_mm,
+                std::vector<MeridianPiece>& out) {
   const auto arc = through(place(c, p0), place(c, 0.5 * (p0 + p1)), place(c, p1));
   double off = 0;
   for (const double share : {0.2, 0.8}) {
@@ -36,8 +36,8 @@ void involute_arcs(const bevel_gear::FingerProfile<double>& c, double p0, double
     out.push_back(arc);
     return;
   }
-  involute_arcs(c, p0, 0.5 * (p0 + p1), sag_mm, out);
-  involute_arcs(c, 0.5 * (p0 + p1), p1, sag_mm, out);
+  flank_arcs(c, p0, 0.5 * (p0 + p1), sag_mm, out);
+  flank_arcs(c, 0.5 * (p0 + p1), p1, sag_mm, out);
 }
 
 }  // namespace
@@ -48,7 +48,8 @@ Meridian finger_meridian(const bevel_gear::FingerProfile<double>& c, double flut
   if (A[1] > 0) pieces.push_back({Vec2::Zero(), A, 0});
   pieces.push_back({A, B, 1 / c.r_t});
   pieces.push_back({B, C, 0});
-  involute_arcs(c, c.p_C, c.p_D, sag_mm, pieces);
+  const std::vector<double> joints = bevel_gear::flank_joints(c);
+  for (std::size_t k = 1; k < joints.size(); ++k) flank_arcs(c, joints[k - 1], joints[k], sag_mm, pieces);
   if (flute_end_mm > D[0]) pieces.push_back({Vec2(D[0], c.rho_D), Vec2(flute_end_mm, c.rho_D), 0});
   return Meridian(std::move(pieces));
 }
@@ -65,18 +66,19 @@ Profile finger_profile(const bevel_gear::FingerProfile<double>& c, const ToolAss
     const double psi = kPi / 2 - (k + 0.5) * step;
     line.emplace_back(std::max(0.0, c.x_o - out * std::sin(psi) + c.h_f), c.rho_o + out * std::cos(psi));
   }
-  // The flank is hollow: its chords enclose it. The sag of a chord over dp is its arc length times its turn, an eighth
-  // of dS dpsi.
-  const auto end = c.involute(c.p_D);
-  const double bend = end.dS * end.dpsi / 8;
-  const int chords = std::max(1, int(std::ceil((c.p_D - c.p_C) * std::sqrt(bend / sag_mm))));
-  for (int k = 0; k <= chords; ++k) {
-    const auto q = c.involute(c.p_C + (c.p_D - c.p_C) * k / chords);
-    line.emplace_back(q.x + c.h_f, q.rho);
+  // A hollow flank is enclosed by its chords; where a modification makes it round they stand out by their sag.
+  double grown = 0;
+  const std::vector<double> steps = bevel_gear::flank_steps(c, sag_mm);
+  if (c.law)
+    for (const double p : steps)
+      if (const auto q = c.flank(p); q.dpsi < 0) grown = std::max(grown, sag_mm / q.cos_psi);
+  for (const double p : steps) {
+    const auto q = c.flank(p);
+    line.emplace_back(q.x + c.h_f, q.rho + grown);
   }
   ToolAssembly whole = tool;
   whole.flute_length_mm = finger_flute_end(c, tool);
-  if (whole.flute_length_mm > line.back().x()) line.emplace_back(whole.flute_length_mm, c.rho_D);
+  if (whole.flute_length_mm > line.back().x()) line.emplace_back(whole.flute_length_mm, c.rho_D + grown);
   std::vector<MeridianPiece> pieces;
   for (std::size_t k = 1; k < line.size(); ++k) pieces.push_back({line[k - 1], line[k], 0});
   return {Meridian(std::move(pieces)), shank_of(whole), holder_of(whole)};

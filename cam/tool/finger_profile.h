@@ -7,7 +7,7 @@
 
 namespace toothpath::tool {
 
-/// The cutting part with heights above the tip. The involute becomes arcs through its own points that leave it by at
+/// The cutting part with heights above the tip. The flank becomes arcs through its own points that leave it by at
 /// most `sag_mm`; flat, corner arc and straight are exact; above the profile the cylinder goes on to `flute_end_mm`,
 /// where the teeth end.
 [[nodiscard]] Meridian finger_meridian(const bevel_gear::FingerProfile<double>& cutter, double flute_end_mm,
@@ -18,8 +18,9 @@ namespace toothpath::tool {
 [[nodiscard]] double finger_flute_end(const bevel_gear::FingerProfile<double>& cutter, const ToolAssembly& tool);
 
 /// The whole tool, enclosed in lines, as meshes and obstacles are asked. Cutting part from the flat upwards: corner arc
-/// in 16 tangents, hollow flank in chords that leave it by `sag_mm`, cylinder to the end of the flutes. It stands out
-/// of the cutter by no more than the greater of sag_mm and r_t / 800.
+/// in 16 tangents, flank in chords that leave it by `sag_mm`, cylinder to the end of the flutes. It stands out of the
+/// cutter by no more than the greater of sag_mm and r_t / 800; twice sag_mm / cos(psi) where a modification makes the
+/// flank round.
 [[nodiscard]] Profile finger_profile(const bevel_gear::FingerProfile<double>& cutter, const ToolAssembly& tool,
                                      double sag_mm);
 

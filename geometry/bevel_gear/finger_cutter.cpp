@@ -2,6 +2,63 @@
 
 namespace toothpath::bevel_gear {
 
+namespace {
+
+constexpr int kBendLooks = 8;        // a smooth piece of a modified flank is looked at in so many places
+constexpr double kBendMargin = 1.1;  // what its bend may be between them
+
+/// Place of the plain flank at this depth below the tip.
+double place_at_depth(const FingerProfile<double>& c, double depth) {
+  const double x = c.law->tip_mm - depth;
+  if (x <= c.plain_x_C) return c.plain_p_C + (x - c.plain_x_C) / c.plain_cos_phi;
+  double low = c.plain_p_C, high = std::max(c.p_D, low) + 1;
+  while (c.involute(high).x < x) high += high - low;
+  for (int k = 0; k < 100; ++k) {
+    const double mid = 0.5 * (low + high);
+    (c.involute(mid).x < x ? low : high) = mid;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Largest arc length times turn per square of p between two places.
+double bend_between(const FingerProfile<double>& c, double from, double to) {
+  double most = 0;
+  for (int k = 0; k < kBendLooks; ++k) {
+    const auto q = c.flank(from + (to - from) * (k + 0.5) / kBendLooks);
+    most = std::max(most, std::abs(q.dS * q.dpsi));
+  }
+  return kBendMargin * most;
+}
+
+}  // namespace
+
+std::vector<double> flank_joints(const FingerProfile<double>& c) {
+  std::vector<double> at{c.p_C, c.p_D};
+  if (c.law) {
+    at.push_back(c.plain_p_C);
+    for (const auto& curve : c.law->removed.curves)
+      for (const double depth : curve.knots()) at.push_back(place_at_depth(c, depth));
+    std::erase_if(at, [&](double p) { return p < c.p_C || p > c.p_D; });
+    std::sort(at.begin(), at.end());
+    at.erase(std::unique(at.begin(), at.end()), at.end());
+  }
+  return at;
+}
+
+std::vector<double> flank_steps(const FingerProfile<double>& c, double chord_mm) {
+  const std::vector<double> joints = flank_joints(c);
+  std::vector<double> out{joints.front()};
+  for (std::size_t i = 1; i < joints.size(); ++i) {
+    // The involute turns by kappa_v per p and has the radius dS/dpsi, largest at D: equal steps of p keep the bound of
+    // the last.
+    const double from = joints[i - 1], to = joints[i], length = to - from,
+                 bend = c.law ? bend_between(c, from, to) : c.involute(to).dS * c.kappa_v;
+    const int steps = std::max(1, static_cast<int>(std::ceil(length * std::sqrt(bend / (8 * chord_mm)))));
+    for (int k = 1; k <= steps; ++k) out.push_back(k == steps ? to : from + length * k / steps);
+  }
+  return out;
+}
+
 FingerSolid::FingerSolid(const FingerProfile<double>& profile) : c_(profile) {}
 
 double FingerSolid::radius(double x) const {
@@ -14,12 +71,12 @@ double FingerSolid::radius(double x) const {
   // Newton on the involute, x(p) = x; monotone, starts on the rack.
   double p = std::max(x / (c_.sin_a * c_.cos_a), c_.p_C + 1e-3 * (c_.p_D - c_.p_C));
   for (int k = 0; k < 50; ++k) {
-    const auto q = c_.involute(p);
+    const auto q = c_.flank(p);
     const double step = (q.x - x) / (q.dS * q.cos_psi);
     p = std::clamp(p - step, c_.p_C, c_.p_D);
     if (std::abs(step) < 1e-14 * (1 + c_.r_0)) break;
   }
-  return c_.involute(p).rho;
+  return c_.flank(p).rho;
 }
 
 double FingerSolid::lower_surface(double rho) const {
@@ -33,14 +90,14 @@ double FingerSolid::lower_surface(double rho) const {
   // Newton on rho(p), kept inside a shrinking bracket: d rho/dp vanishes where the profile is parallel to the axis.
   double lo = c_.p_C, hi = c_.p_D, p = lo + (hi - lo) * (rho - c_.rho_C) / (c_.rho_D - c_.rho_C);
   for (int k = 0; k < 80; ++k) {
-    const auto q = c_.involute(p);
+    const auto q = c_.flank(p);
     (q.rho < rho ? lo : hi) = p;
     const double slope = q.dS * q.sin_psi, newton = p - (q.rho - rho) / slope;
     const double next = slope > 0 && newton > lo && newton < hi ? newton : 0.5 * (lo + hi);
     if (std::abs(next - p) <= 1e-14 * (1 + c_.r_0)) break;
     p = next;
   }
-  return c_.involute(p).x;
+  return c_.flank(p).x;
 }
 
 double FingerSolid::signed_distance(double x, double rho) const {
@@ -63,20 +120,24 @@ double FingerSolid::signed_distance(double x, double rho) const {
   // Involute CD: foot of the perpendicular, f = (P - Q) . t = 0. The profile is hollow with radius r_vb tan(alpha_k).
   {
     double p = std::clamp((x * c_.cos_a + (rho - c_.r_0) * c_.sin_a) / c_.sin_a, c_.p_C, c_.p_D);
-    double normal = 0;
+    double normal = 0, low = c_.p_C, high = c_.p_D;
     bool foot = false;
     for (int k = 0; k < 60; ++k) {
-      const auto q = c_.involute(p);
+      const auto q = c_.flank(p);
       const double dx = x - q.x, dr = rho - q.rho;
       const double f = dx * q.cos_psi + dr * q.sin_psi;
       normal = -dx * q.sin_psi + dr * q.cos_psi;
       const double slope = -q.dS + normal * q.dpsi;
       if (!(slope < 0)) break;
-      const double next = std::clamp(p - f / slope, c_.p_C, c_.p_D);
+      double next = std::clamp(p - f / slope, c_.p_C, c_.p_D);
+      if (c_.law) {  // its bend jumps: the foot stays between what was found on both sides of it
+        (f > 0 ? low : high) = p;
+        if (!(next > low && next < high)) next = 0.5 * (low + high);
+      }
       const double step = next - p;
       p = next;
       if (std::abs(step) <= 1e-13 * (1 + c_.r_0)) {
-        const auto s = c_.involute(p);
+        const auto s = c_.flank(p);
         normal = -(x - s.x) * s.sin_psi + (rho - s.rho) * s.cos_psi;
         foot = std::abs((x - s.x) * s.cos_psi + (rho - s.rho) * s.sin_psi) <= 1e-9 * (1 + c_.r_0);
         break;

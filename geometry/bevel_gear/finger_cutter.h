@@ -3,13 +3,17 @@
 // Meridian plane (x, rho): x along the cutter axis from the pitch cone towards the shank, rho the radius. From the tip:
 // flat (x = -h_f, rho <= rho_A), corner arc AB (radius r_t), straight BC, involute CD, cylinder from D on. G1 but at D.
 // One running parameter p [mm] covers A..D: on the involute it is the arc parameter with p = 0 on the pitch circle,
-// below C it is plain arc length. psi is the inclination of the profile against the axis. mm and rad. Derivation:
-// docs/bevel_gear.md, section 4.
+// below C it is plain arc length. With a modification the flank C..D is the plain one moved along its normals: C lies
+// where the modification has no bend any more, and the straight is the tangent there. psi is the inclination of the
+// profile against the axis. mm and rad. Derivation: docs/bevel_gear.md, section 4.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <vector>
 
+#include "geometry/bevel_gear/flank_law.h"
 #include "geometry/bevel_gear/trace.h"
 
 namespace toothpath::bevel_gear {
@@ -56,7 +60,10 @@ struct FingerProfile {
   S x_C{}, rho_C{}, x_B{}, rho_B{};
   S x_o{}, rho_o{};  ///< centre of the corner arc; rho_A = rho_o
   S x_D{}, rho_D{};
-  bool base_circle_clips_C = false;  ///< C wanted to lie inside the base circle: h_C is not reached
+  bool base_circle_clips_C = false;       ///< C wanted to lie inside the base circle: h_C is not reached
+  std::shared_ptr<const ProfileLaw> law;  ///< what is taken off the plain flank; null: nothing
+  /// Of the plain profile: where the involute ends, and the straight goes on along its tangent.
+  S plain_p_C{}, plain_x_C{}, plain_rho_C{}, plain_sin_phi{}, plain_cos_phi{};
 
   /// Point of the involute branch, valid where tan(alpha_n) + kappa_v p >= 0.
   [[nodiscard]] ProfilePoint<S> involute(const S& p) const {
@@ -71,10 +78,40 @@ struct FingerProfile {
     q.dS = cos_a * (sin_a / cos_a + kappa_v * p);
     return q;
   }
-  /// Point of the whole profile A..D, p_A <= p; beyond p_D the involute goes on.
+  /// Point of the flank above C: the involute, or what its modification makes of it.
+  [[nodiscard]] ProfilePoint<S> flank(const S& p) const {
+    if (!law) return involute(p);
+    using std::sqrt;
+    const bool on_involute = !(p < plain_p_C);
+    ProfilePoint<S> q;
+    if (on_involute) q = involute(p);
+    else
+      q = {S(plain_x_C + (p - plain_p_C) * plain_cos_phi),
+           S(plain_rho_C + (p - plain_p_C) * plain_sin_phi),
+           plain_sin_phi,
+           plain_cos_phi,
+           S(0),
+           S(1)};
+    // c(p) along the normal (-sin psi, cos psi), and its derivatives by p, from those by the depth.
+    const S dS2 = on_involute ? S(cos_a * kappa_v) : S(0), depth = S(law->tip_mm) - q.x;
+    const S x1 = q.dS * q.cos_psi, x2 = dS2 * q.cos_psi - q.dS * q.sin_psi * q.dpsi;
+    const S r1 = law->removed.derivative(depth, 1), c = law->removed.derivative(depth, 0), c1 = -r1 * x1,
+            c2 = law->removed.derivative(depth, 2) * x1 * x1 - r1 * x2;
+    // Its tangent: `along` times the plain one and c1 times the normal.
+    const S along = q.dS - c * q.dpsi, along1 = dS2 - c1 * q.dpsi, square = along * along + c1 * c1,
+            length = sqrt(square), ct = along / length, st = c1 / length, sp = q.sin_psi, cp = q.cos_psi;
+    q.x = q.x - c * sp;
+    q.rho = q.rho + c * cp;
+    q.sin_psi = sp * ct + cp * st;
+    q.cos_psi = cp * ct - sp * st;
+    q.dpsi = q.dpsi + (c2 * along - c1 * along1) / square;
+    q.dS = length;
+    return q;
+  }
+  /// Point of the whole profile A..D, p_A <= p; beyond p_D the flank goes on.
   [[nodiscard]] ProfilePoint<S> at(const S& p) const {
     using std::sin, std::cos;
-    if (!(p < p_C)) return involute(p);
+    if (!(p < p_C)) return flank(p);
     ProfilePoint<S> q;
     q.dS = S(1);
     if (!(p < p_B)) {
@@ -97,13 +134,21 @@ struct FingerProfile {
   [[nodiscard]] S line_radius(const S& x) const { return rho_C + (x - x_C) * sin_phi / cos_phi; }
 };
 
+/// What defines a profile, by the symbols of docs/bevel_gear.md 4.
+template <typename S>
+struct FingerMeasures {
+  S alpha_n{}, kappa_v{};  ///< kappa_v: 1/r_v of the gear, >= 0
+  S h_f{};                 ///< depth of the tip below the pitch cone
+  S m_nj{}, r_t{}, h_C{}, x_D{};
+};
+
 /// Builds the profile. The numbers may be unusable (pointed tip, arc above C): design checks live in
 /// geometry/bevel_gear/limits.h.
-/// @param kappa_v 1/r_v of the gear, >= 0;  @param h_f depth of the tip below the pitch cone
+/// @param law what modifications take off the flank; null: nothing
 template <typename S>
-FingerProfile<S> make_finger_profile(const S& alpha_n, const S& kappa_v, const S& h_f, const S& m_nj, const S& r_t,
-                                     const S& h_C, const S& x_D) {
-  using std::sin, std::cos, std::atan;
+FingerProfile<S> make_finger_profile(const FingerMeasures<S>& measures, std::shared_ptr<const ProfileLaw> law) {
+  using std::sin, std::cos, std::atan, std::atan2;
+  const auto& [alpha_n, kappa_v, h_f, m_nj, r_t, h_C, x_D] = measures;
   FingerProfile<S> c;
   c.alpha_n = alpha_n;
   c.sin_a = sin(alpha_n);
@@ -117,10 +162,19 @@ FingerProfile<S> make_finger_profile(const S& alpha_n, const S& kappa_v, const S
     c.p_C = -c.sin_a / c.cos_a / kappa_v;
     c.base_circle_clips_C = true;
   }
-  const ProfilePoint<S> C = c.involute(c.p_C);
+  ProfilePoint<S> C = c.involute(c.p_C);
+  c.phi = alpha_n + kappa_v * (c.r_0 + c.p_C);
+  c.plain_p_C = c.p_C, c.plain_x_C = C.x, c.plain_rho_C = C.rho, c.plain_sin_phi = C.sin_psi;
+  c.plain_cos_phi = C.cos_psi;
+  if (law) {
+    c.law = std::move(law);
+    const S bent_to = S(c.law->tip_mm) - S(c.law->bent_to);
+    if (bent_to < C.x) c.p_C = c.p_C + (bent_to - C.x) / C.cos_psi;
+    C = c.flank(c.p_C);
+    c.phi = atan2(C.sin_psi, C.cos_psi);
+  }
   c.x_C = C.x;
   c.rho_C = C.rho;
-  c.phi = alpha_n + kappa_v * (c.r_0 + c.p_C);
   c.sin_phi = C.sin_psi;
   c.cos_phi = C.cos_psi;
   c.x_o = r_t - h_f;
@@ -132,7 +186,7 @@ FingerProfile<S> make_finger_profile(const S& alpha_n, const S& kappa_v, const S
   // Newton for x(p) = x_D; dx/dp = dS cos(psi) > 0 above the base circle. Converges in 4..6 steps to eps * x_D.
   S p = x_D / (c.sin_a * c.cos_a);
   for (int k = 0; k < 60; ++k) {
-    const ProfilePoint<S> q = c.involute(p);
+    const ProfilePoint<S> q = c.flank(p);
     const S step = (q.x - x_D) / (q.dS * q.cos_psi);
     p -= step;
     if (bevel_detail::magnitude(step) <=
@@ -141,9 +195,21 @@ FingerProfile<S> make_finger_profile(const S& alpha_n, const S& kappa_v, const S
   }
   c.p_D = p;
   c.x_D = x_D;
-  c.rho_D = c.involute(p).rho;
+  c.rho_D = c.flank(p).rho;
   return c;
 }
+
+/// Without modifications.
+template <typename S>
+FingerProfile<S> make_finger_profile(const S& alpha_n, const S& kappa_v, const S& h_f, const S& m_nj, const S& r_t,
+                                     const S& h_C, const S& x_D) {
+  return make_finger_profile<S>(FingerMeasures<S>{alpha_n, kappa_v, h_f, m_nj, r_t, h_C, x_D}, nullptr);
+}
+
+/// Where the bend of the flank may jump, from p_C to p_D with both.
+[[nodiscard]] std::vector<double> flank_joints(const FingerProfile<double>& profile);
+/// Places on the flank from p_C to p_D, joints among them, whose chords leave it by at most `chord_mm`.
+[[nodiscard]] std::vector<double> flank_steps(const FingerProfile<double>& profile, double chord_mm);
 
 /// Solid cutter: everything inside the profile, the cylinder rho_D going on for ever above D.
 class FingerSolid {

@@ -4,6 +4,7 @@
 
 #include "geometry/base/angle.h"
 #include "geometry/bevel_gear/limits.h"
+#include "geometry/bevel_gear/modified_walls.h"
 
 namespace toothpath::bevel_gear {
 namespace {
@@ -34,8 +35,9 @@ FingerCutterData finger_cutter_for(const BevelGearParameters& p) {
   c.module_mm = round_into(kNarrowestShare * m_i, kWidestShare * m_i);
   c.rack_depth_mm = p.addendum_mm;
   c.profile_height_mm = round_into(kHeightShare * p.addendum_mm, 1.15 * p.addendum_mm);
-  const auto bare = make_finger_profile<double>(p.pressure_angle_rad, kappa_v, p.dedendum_mm, c.module_mm, 0.0,
-                                                c.rack_depth_mm, c.profile_height_mm);
+  const auto bare = make_finger_profile<double>(
+      {p.pressure_angle_rad, kappa_v, p.dedendum_mm, c.module_mm, 0.0, c.rack_depth_mm, c.profile_height_mm},
+      profile_law(p));
   const double largest = largest_tip_radius(bare);
   c.tip_radius_mm = largest > 0 ? round_into(0.9 * kTipRadiusShare * largest, kTipRadiusShare * largest)
                                 : 1e-3 * p.outer_transverse_module_mm;
@@ -68,15 +70,9 @@ std::vector<ProfileSample> sample_profile(const FingerProfile<double>& c, double
   }
   add('S', c.p_B, {c.x_B, c.rho_B, c.sin_phi, c.cos_phi, 0.0, 1.0}, 0);
   add('S', c.p_C, {c.x_C, c.rho_C, c.sin_phi, c.cos_phi, 0.0, 1.0}, 0);
-  // The involute turns by kappa_v per p and has the radius dS/dpsi, largest at D: equal steps of p keep the bound of
-  // the last.
-  const double length = c.p_D - c.p_C;
-  const int steps =
-      std::max(1, static_cast<int>(std::ceil(length * std::sqrt(c.involute(c.p_D).dS * c.kappa_v / (8 * chord_mm)))));
-  for (int k = 0; k <= steps; ++k) {
-    const double p = k == steps ? c.p_D : c.p_C + length * k / steps;
-    const auto q = c.involute(p);
-    add('I', p, q, q.dS > 1e-9 ? -c.kappa_v / q.dS : 0);
+  for (const double p : flank_steps(c, chord_mm)) {
+    const auto q = c.flank(p);
+    add('I', p, q, q.dS > 1e-9 ? -q.dpsi / q.dS : 0);
   }
   samples.push_back({'Z', c.p_D, c.x_D + c.h_f, c.x_D, c.rho_D, 0, 0});
   return samples;

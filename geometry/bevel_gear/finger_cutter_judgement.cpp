@@ -53,7 +53,9 @@ struct Judge {
                               std::move(meaning)});
   }
   [[nodiscard]] BevelWall<double> wall(const BevelHalf& half, int k) const {
-    return {g.trace(half.hand, c.r_0), c, k == 0 ? 1 : -1};
+    BevelWall<double> cut{g.trace(half.hand, c.r_0), c, k == 0 ? 1 : -1};
+    for (int side = 0; side < 2; ++side) cut.trace.lead[side] = half.walls[k].trace.lead[side];
+    return cut;
   }
 
   void profile_conditions() const {
@@ -256,12 +258,7 @@ CutterJudgement judge_finger_profile(const BevelGear& g, const FingerCutterData&
 }
 
 CutterJudgement judge_finger_cutter(const BevelGear& g, const FingerCutterData& data, const JudgementOptions& options) {
-  const auto& p = g.parameters();
-  return judge_finger_profile(
-      g, data,
-      make_finger_profile<double>(p.pressure_angle_rad, g.kappa_v(), p.dedendum_mm, data.module_mm, data.tip_radius_mm,
-                                  data.rack_depth_mm, data.profile_height_mm),
-      options);
+  return judge_finger_profile(g, data, g.profile_of(data), options);
 }
 
 }  // namespace toothpath::bevel_gear

@@ -2,6 +2,7 @@
 
 #include "geometry/base/angle.h"
 #include "geometry/bevel_gear/limits.h"
+#include "geometry/bevel_gear/modified_walls.h"
 #include "geometry/bevel_gear/pass.h"
 
 namespace toothpath::bevel_gear {
@@ -9,6 +10,13 @@ namespace toothpath::bevel_gear {
 double BevelGear::pitch() const { return 2 * kPi / parameters_.teeth; }
 
 double BevelGear::normal_module(double R) const { return 2 * sin_delta_ / parameters_.teeth * R * std::sqrt(R / R_0_); }
+
+FingerProfile<double> BevelGear::profile_of(const FingerCutterData& c) const {
+  const auto& p = parameters_;
+  return make_finger_profile<double>({p.pressure_angle_rad, kappa_v(), p.dedendum_mm, c.module_mm, c.tip_radius_mm,
+                                      c.rack_depth_mm, c.profile_height_mm},
+                                     profile_law(p));
+}
 
 BevelTrace<double> BevelGear::trace(int h, double r_0) const {
   BevelTrace<double> t;
@@ -73,6 +81,7 @@ double contact_reach(const BevelWall<double>& wall, double beta, double height) 
 
 /// In modules: how far a wall grid stays away from where ell(beta) turns back.
 constexpr double kRegularMargin = 0.01;
+constexpr int kPathLooks = 256;
 
 class BevelGearBuilder {
  public:
@@ -86,6 +95,8 @@ class BevelGearBuilder {
     if (!refusals_.empty()) return std::move(refusals_);
     blank();
     if (!refusals_.empty()) return std::move(refusals_);
+    modifications();
+    if (!refusals_.empty()) return std::move(refusals_);
     profile();
     if (!refusals_.empty()) return std::move(refusals_);
     halves();
@@ -95,6 +106,7 @@ class BevelGearBuilder {
     regularity();
     if (!refusals_.empty()) return std::move(refusals_);
     top_land();
+    if (!refusals_.empty()) return std::move(refusals_);
     return std::move(gear_);
   }
 
@@ -134,12 +146,30 @@ class BevelGearBuilder {
     g.e_h_ = kPi / (2 * p.teeth) + p.backlash_mm / (4 * g.R_e_ * g.sin_delta_);
   }
 
+  /// The face of a half, without its share of the relief groove.
+  [[nodiscard]] modification::Rectangle rectangle(int zone) const {
+    const auto& p = gear_.parameters_;
+    if (p.form == BevelForm::single) return rectangle_of(p, gear_.R_i_, gear_.R_e_);
+    const double w = p.relief_half_width_mm;
+    return zone == 0 ? rectangle_of(p, gear_.R_i_, gear_.R_ref_ - w) : rectangle_of(p, gear_.R_ref_ + w, gear_.R_e_);
+  }
+
+  void modifications() {
+    const auto& p = gear_.parameters_;
+    const int zones = p.form == BevelForm::single ? 1 : 2;
+    for (std::size_t k = 0; k < p.modifications.size(); ++k)
+      if (const auto zone = p.modifications[k].zone; zone && (*zone < 0 || *zone >= zones))
+        refusals_.push_back({fmt::format("modification[{}].zone", k),
+                             fail("zone = {} is not below {}, the number of halves", *zone, zones)});
+    for (int zone = 0; zone < zones && refusals_.empty(); ++zone)
+      if (rectangle(zone).face() > 0)  // a groove that leaves no face is refused for that
+        if (auto r = refused_modification(p, zone, zones, rectangle(zone))) refusals_.push_back(std::move(*r));
+  }
+
   void profile() {
     auto& g = gear_;
-    const auto& p = g.parameters_;
-    const auto& c = g.cutter_;
-    cutter_ = make_finger_profile<double>(p.pressure_angle_rad, g.kappa_v(), p.dedendum_mm, c.module_mm,
-                                          c.tip_radius_mm, c.rack_depth_mm, c.profile_height_mm);
+    cutter_ = g.profile_of(g.cutter_);
+    if (auto r = refused_profile(cutter_)) return refusals_.push_back(std::move(*r));
     check_bevel_cutter(g, cutter_, g.limits_, refusals_, g.warnings_);
   }
 
@@ -155,26 +185,53 @@ class BevelGearBuilder {
       const double radius = g.R_i_ * g.sin_delta_ + h * g.cos_delta_;
       g.limits_.top_land_mm = radius * tooth * std::sqrt(g.R_i_ / g.R_0_);
     }
+    judge_form();
     warn_of_thin_tips(g.limits_, g.warnings_);
+  }
+
+  /// What modifications come to; the plain gear beside it tells what they cost.
+  void judge_form() {
+    auto& g = gear_;
+    const bool path = std::any_of(g.halves_.begin(), g.halves_.end(), [](const BevelHalf& half) {
+      return half.walls[0].trace.lead[0] || half.walls[0].trace.lead[1];
+    });
+    if (!path && !cutter_.law) return;
+    g.modified_ = modified_form(g);
+    g.modified_->top_land_mm = g.limits_.top_land_mm;
+    BevelGearParameters plain = g.parameters_;
+    plain.modifications.clear();
+    const auto made = BevelGear::make(plain, g.cutter_);
+    if (const BevelGear* other = made.value_if()) g.modified_->plain_top_land_mm = other->limits().top_land_mm;
+    if (!(g.limits_.top_land_mm > 0))
+      refuse(
+          "modification",
+          "the modifications leave a top land of {:.4f} mm at the small end (plain {:.4f} mm), limit 0: the tooth is "
+          "pointed; less amount would do",
+          g.limits_.top_land_mm, g.modified_->plain_top_land_mm);
+  }
+
+  void add_half(int h, double from, double to) {
+    BevelHalf b;
+    b.hand = h;
+    b.R_from = b.ell_from = from;
+    b.R_to = b.ell_to = to;
+    const int zone = static_cast<int>(gear_.halves_.size());
+    const modification::Rectangle on = rectangle(zone);
+    BevelTrace<double> trace = gear_.trace(h, cutter_.r_0);
+    if (on.face() > 0)
+      for (int k = 0; k < 2; ++k) trace.lead[k] = lead_law(gear_.parameters_, k == 0 ? 1 : -1, zone, on, cutter_);
+    if (auto r = refused_path(trace, on.from_mm, on.to_mm)) refusals_.push_back(std::move(*r));
+    for (int k = 0; k < 2; ++k) b.walls[k] = {trace, cutter_, k == 0 ? 1 : -1};
+    gear_.halves_.push_back(std::move(b));
   }
 
   void halves() {
     auto& g = gear_;
     const auto& p = g.parameters_;
-    const auto half = [&](int h, double from, double to) {
-      BevelHalf b;
-      b.hand = h;
-      b.R_from = b.ell_from = from;
-      b.R_to = b.ell_to = to;
-      for (int k = 0; k < 2; ++k) b.walls[k] = {g.trace(h, cutter_.r_0), cutter_, k == 0 ? 1 : -1};
-      return b;
-    };
-    if (p.form == BevelForm::single) {
-      g.halves_.push_back(half(p.hand, g.R_i_, g.R_e_));
-      return;
-    }
-    g.halves_.push_back(half(p.hand, g.R_i_, g.R_ref_));
-    g.halves_.push_back(half(-p.hand, g.R_ref_, g.R_e_));
+    if (p.form == BevelForm::single) return add_half(p.hand, g.R_i_, g.R_e_);
+    add_half(p.hand, g.R_i_, g.R_ref_);
+    add_half(-p.hand, g.R_ref_, g.R_e_);
+    if (!refusals_.empty()) return;
     const int sigma = -p.hand;
     const auto X = bevel_corner(g.halves_[0].wall(sigma).trace, g.halves_[1].wall(sigma).trace, sigma, g.R_ref_);
     if (!X) {
@@ -212,6 +269,18 @@ class BevelGearBuilder {
     g.halves_[1].ell_from = g.R_ref_ + w;
   }
 
+  /// Smallest F of a pass. On the equidistant F - 1 is monotone: it is smallest at the large end for eps = +1, at the
+  /// small end for eps = -1. A modified path is only near that.
+  static double least_speed_ratio(const BevelWall<double>& w, double from, double to) {
+    const auto& t = w.trace;
+    double least = t.speed_ratio(w.sigma, w.eps() > 0 ? std::max(to, t.beta_end) : from);
+    for (int n = 0; t.lead_of(w.sigma) && n <= kPathLooks; ++n) {
+      const double at = from + (to - from) * n / kPathLooks;
+      if (!t.straight(w.sigma, at)) least = std::min(least, t.speed_ratio(w.sigma, at));
+    }
+    return least;
+  }
+
   void passes() {
     auto& g = gear_;
     const auto& p = g.parameters_;
@@ -245,9 +314,7 @@ class BevelGearBuilder {
         }
         half.beta_from[k] = *from;
         half.beta_to[k] = *to;
-        // F - 1 is monotone: the smallest F of a pass is at its large end for eps = +1, at its small end for eps = -1.
-        const double beta = w.eps() > 0 ? std::max(*to, t.beta_end) : *from;
-        least_F_ = std::min(least_F_, t.speed_ratio(w.sigma, beta));
+        least_F_ = std::min(least_F_, least_speed_ratio(w, *from, *to));
         if (w.eps() > 0 && *to < t.beta_end) {
           const double loss = 0.17 * std::pow(t.r_0, 3) / (t.R_0 * t.R_0);
           g.limits_.cusp_loss_mm = std::max(g.limits_.cusp_loss_mm, g.R_e_ > t.R_lim() ? loss : 0.0);

@@ -5,6 +5,7 @@
 // azimuth 0 of the frame. Halves count from the inside. Derivation: docs/bevel_gear.md.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -51,6 +52,13 @@ struct BevelCorner {
   double R_c = 0, e = 0;                  ///< the crossing
 };
 
+/// What modifications come to.
+struct ModifiedForm {
+  double profile_mm = 0, profile_turned_rad = 0;  ///< taken by the profile of the mill, and turn of the normals by it
+  double lead_mm = 0, lead_turned_rad = 0;        ///< taken by its paths at the pitch cone
+  double top_land_mm = 0, plain_top_land_mm = 0;  ///< BevelLimits::top_land_mm, and that of the plain gear
+};
+
 /// A refused number: the key of the job it belongs to ("face_width", "tool.tip_radius") and what is wrong.
 struct BevelRefusal {
   std::string key;
@@ -70,6 +78,8 @@ class BevelGear {
   [[nodiscard]] const BevelCorner& corner() const { return corner_; }
   [[nodiscard]] bool herringbone() const { return halves_.size() == 2; }
   [[nodiscard]] const BevelLimits& limits() const { return limits_; }
+  /// With a modification that takes something.
+  [[nodiscard]] const std::optional<ModifiedForm>& modified() const { return modified_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
   [[nodiscard]] double delta() const { return delta_; }
@@ -85,7 +95,9 @@ class BevelGear {
   [[nodiscard]] double pitch() const;  ///< 2 pi / z
   /// Normal module at cone distance R.
   [[nodiscard]] double normal_module(double R) const;
-  /// A trace of this gear for a cutter with half width r_0, hand h.
+  /// The profile that a mill of this gear has.
+  [[nodiscard]] FingerProfile<double> profile_of(const FingerCutterData& cutter) const;
+  /// A trace of this gear for a cutter with half width r_0, hand h; without modifications along the face.
   [[nodiscard]] BevelTrace<double> trace(int h, double r_0) const;
 
   /// Cutter-frame pose: tip and axis (tip to shank) in the blank frame, tip `lift` above its working depth.
@@ -99,6 +111,7 @@ class BevelGear {
   std::vector<BevelHalf> halves_;
   BevelCorner corner_;
   BevelLimits limits_;
+  std::optional<ModifiedForm> modified_;
   std::vector<std::string> warnings_;
   double delta_ = 0, sin_delta_ = 0, cos_delta_ = 0, R_e_ = 0, R_i_ = 0, R_0_ = 0, R_ref_ = 0, e_h_ = 0;
   friend class BevelGearBuilder;

@@ -1,6 +1,10 @@
 // What defines an equal-base-circle bevel gear: the numbers of a job's [gear] table, in mm and rad.
 #pragma once
 
+#include <vector>
+
+#include "geometry/modification/modification.h"
+
 namespace toothpath::bevel_gear {
 
 /// Two halves of opposite hand that meet at the apex cone distance, or one hand over the whole face.
@@ -26,6 +30,7 @@ struct BevelGearParameters {
   // What the blank has beside its teeth: cylinders about its axis, 0: none. The tool must not meet them.
   double hub_diameter_mm = 0, hub_length_mm = 0;      ///< behind the root of the large end
   double shaft_diameter_mm = 0, shaft_length_mm = 0;  ///< from the root of the small end towards the apex and beyond
+  std::vector<modification::Modification> modifications = {};  ///< of the flanks: `right` is wall U; zones are halves
 };
 
 }  // namespace toothpath::bevel_gear

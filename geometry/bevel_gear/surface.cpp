@@ -12,8 +12,8 @@ BevelCurvature bevel_curvature(const BevelWall<double>& w, double beta, double p
   const double sg = std::sin(f.gamma), cg = std::cos(f.gamma);
   const auto& c = f.centre;
   const bool straight = t.straight(w.sigma, beta);
-  const double F = straight ? 1.0 : t.speed_ratio(w.sigma, beta), kappa = straight ? 0.0 : t.kappa(beta), R_c = c.R_c,
-               sb = std::sin(c.beta_c), cb = std::cos(c.beta_c);
+  const double F = straight ? 1.0 : t.speed_ratio(w.sigma, beta), kappa = straight ? 0.0 : t.turn(w.sigma, beta),
+               R_c = c.R_c, sb = std::sin(c.beta_c), cb = std::cos(c.beta_c);
   const double R_p = F * cb, e_p = F * sb / (R_c * sd), beta_p = kappa - F * sb / R_c;
   const double x_N = q.x + q.rho * q.sin_psi / q.cos_psi, tn = sb / cb;
   const double qq = 1 + x_N * cd / (R_c * sd), q_p = -x_N * R_p * cd / (R_c * R_c * sd);
@@ -50,12 +50,15 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
   t.R_0 = w.trace.R_0, t.sin_delta = w.trace.sin_delta, t.cos_delta = w.trace.cos_delta;
   t.beta_ref = w.trace.beta_ref, t.r_0 = w.trace.r_0, t.e_h = w.trace.e_h, t.h = w.trace.h;
   t.beta_end = w.trace.beta_end;
+  for (int k = 0; k < 2; ++k) t.lead[k] = w.trace.lead[k];
   const auto& c = w.cutter;
   FingerProfile<D2>& k = dual.cutter;
   k.sin_a = c.sin_a, k.cos_a = c.cos_a, k.alpha_n = c.alpha_n, k.kappa_v = c.kappa_v, k.r_0 = c.r_0, k.h_f = c.h_f;
   k.r_t = c.r_t, k.p_C = c.p_C, k.p_B = c.p_B, k.p_A = c.p_A, k.p_D = c.p_D, k.phi = c.phi, k.sin_phi = c.sin_phi;
   k.cos_phi = c.cos_phi, k.x_C = c.x_C, k.rho_C = c.rho_C, k.x_B = c.x_B, k.rho_B = c.rho_B, k.x_o = c.x_o;
-  k.rho_o = c.rho_o, k.x_D = c.x_D, k.rho_D = c.rho_D;
+  k.rho_o = c.rho_o, k.x_D = c.x_D, k.rho_D = c.rho_D, k.law = c.law, k.plain_p_C = c.plain_p_C;
+  k.plain_x_C = c.plain_x_C, k.plain_rho_C = c.plain_rho_C, k.plain_sin_phi = c.plain_sin_phi;
+  k.plain_cos_phi = c.plain_cos_phi;
 
   const double scale = w.trace.R_0, half_pi = std::asin(1.0);
   // Steps are cut back: beta stays inside the trace, p inside the profile (a little beyond D on the involute).
@@ -147,7 +150,7 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
   if (height >= c.x_C) {
     start.p = std::max(c.p_C, height / (c.sin_a * c.cos_a));
     for (int k = 0; k < 8; ++k) {
-      const auto q = c.involute(start.p);
+      const auto q = c.flank(start.p);
       if (!(q.dS > 0)) break;
       start.p = std::max(c.p_C, start.p - (q.x - height) / (q.dS * q.cos_psi));
     }

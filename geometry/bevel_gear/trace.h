@@ -8,8 +8,10 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "geometry/base/vec.h"
+#include "geometry/bevel_gear/flank_law.h"
 
 namespace toothpath::bevel_gear {
 
@@ -60,7 +62,14 @@ struct CutterCentre {
   S beta_c{};   ///< signed spiral angle of the centre path
 };
 
-/// One hand of teeth: its trace, and the cutter-centre paths that are parallel to it.
+/// Distance of a cutter-centre path from the trace, and its derivatives with the arc length of the trace.
+template <typename S>
+struct PathDistance {
+  S d{}, slope{}, bend{};
+};
+
+/// One hand of teeth: its trace, and the cutter-centre paths that are parallel to it, or nearer where a wall is
+/// modified along the face.
 template <typename S>
 struct BevelTrace {
   S R_0{};  ///< cone distance where beta = 0: the trace ends here
@@ -70,6 +79,19 @@ struct BevelTrace {
   S e_h{};       ///< half angle of the tooth space, azimuth
   int h = 1;     ///< hand
   S beta_end{};  ///< > 0: the path of eps = +1 goes on straight below this spiral angle, short of its cusp
+  std::shared_ptr<const LeadLaw> lead[2];  ///< of walls L, U; null: the path is parallel to the trace
+
+  [[nodiscard]] const LeadLaw* lead_of(int sigma) const { return lead[sigma > 0 ? 0 : 1].get(); }
+  /// Distance of the path of wall sigma from the trace: r_0 less what the modification takes.
+  [[nodiscard]] PathDistance<S> distance(int sigma, const S& beta) const {
+    using std::cos;
+    const LeadLaw* law = lead_of(sigma);
+    if (!law) return {r_0, S(0), S(0)};
+    const S way(law->per_normal), cone = R(beta), along = cos(beta);  // dR/ds = cos(beta), its derivative 1/(2 R_0)
+    const S first = law->removed.derivative(cone, 1), second = law->removed.derivative(cone, 2);
+    return {S(r_0 - way * law->removed.derivative(cone, 0)), S(-way * first * along),
+            S(-way * (second * along * along + first / (S(2) * R_0)))};
+  }
 
   /// Spiral angle at cone distance R, 0 < R <= R_0 (rounding beyond R_0 is clamped); 0 .. pi/2.
   [[nodiscard]] S beta(const S& R) const {
@@ -95,15 +117,32 @@ struct BevelTrace {
     const S t = tan(beta);
     return S(h) * (S(2) * t * t - S(1)) / (S(2) * R_0 * sin(beta));
   }
-  /// dC/ds of the equidistant of wall sigma against the trace, sign included. At beta = 0 the end of the trace is a
+  /// dC/ds of the path of wall sigma against the trace, sign included. At beta = 0 the end of the trace is a
   /// cusp: minus infinity for eps = +1, plus infinity for eps = -1.
   [[nodiscard]] S speed_ratio(int sigma, const S& beta) const {
     using std::sin, std::tan;
     const S sb = sin(beta), t = tan(beta), eps = S(-sigma * h);
-    const S num = eps * r_0 * (S(2) * t * t - S(1));
+    const PathDistance<S> off = distance(sigma, beta);
+    const S num = eps * off.d * (S(2) * t * t - S(1));
     if (sb == S(0))
       return num < S(0) ? S(-std::numeric_limits<double>::infinity()) : S(std::numeric_limits<double>::infinity());
-    return S(1) + num / (S(2) * R_0 * sb);
+    const S along = S(1) + num / (S(2) * R_0 * sb);
+    if (!lead_of(sigma)) return along;
+    using std::sqrt;
+    const S speed = sqrt(S(along * along + off.slope * off.slope));
+    return along < S(0) ? S(-speed) : speed;
+  }
+  /// Turn of the path's tangent in the crown plane per arc length of the trace; that of the trace where the path is
+  /// parallel to it. beta > 0.
+  [[nodiscard]] S turn(int sigma, const S& beta) const {
+    if (!lead_of(sigma)) return kappa(beta);
+    using std::sin, std::cos, std::tan;
+    const S sb = sin(beta), cb = cos(beta), t = tan(beta), side = S(sigma), bends = kappa(beta);
+    const S rise = S(-h) / (S(4) * R_0 * R_0 * sb) *
+                   (S(4) * t * (S(1) + t * t) / sb - (S(2) * t * t - S(1)) * cb / (sb * sb));  // d kappa/ds
+    const PathDistance<S> off = distance(sigma, beta);
+    const S a = S(1) - side * off.d * bends, b = side * off.slope;
+    return bends + (a * side * off.bend + b * side * (off.slope * bends + off.d * rise)) / (a * a + b * b);
   }
   /// Does the path of wall sigma run straight at this parameter?
   [[nodiscard]] bool straight(int sigma, const S& beta) const { return -sigma * h > 0 && beta < beta_end; }
@@ -126,24 +165,30 @@ struct BevelTrace {
     c.beta_c = from.beta_c - turn;
     return c;
   }
-  /// The equidistant itself, never straightened.
+  /// The path itself, never straightened.
   [[nodiscard]] CutterCentre<S> curved_centre(int sigma, const S& beta) const {
     using std::sin, std::cos, std::sqrt, std::atan2;
     const S eps = S(-sigma * h), sb = sin(beta), cb = cos(beta), r = R_0 * cb * cb;
-    const S u = r + eps * r_0 * sb, v = r_0 * cb;
+    const PathDistance<S> off = distance(sigma, beta);
+    const S u = r + eps * off.d * sb, v = off.d * cb;
     const S theta_d = atan2(v, u);
     CutterCentre<S> c;
     c.R_c = sqrt(S(u * u + v * v));
     c.theta_c = theta(beta) + S(sigma) * theta_d - S(sigma) * e_h * sin_delta;
     c.e = c.theta_c / sin_delta;
     c.beta_c = S(h) * (beta + eps * theta_d);
+    if (lead_of(sigma)) {  // the path leans against the trace; both times sin(beta), which is regular at its end
+      const S t = sb / cb;
+      c.beta_c =
+          c.beta_c + atan2(S(S(sigma) * off.slope * sb), S(sb + eps * off.d * (S(2) * t * t - S(1)) / (S(2) * R_0)));
+    }
     return c;
   }
   /// Angle between the polar rays of trace and centre.
   [[nodiscard]] S theta_d(int sigma, const S& beta) const {
     using std::sin, std::cos, std::atan2;
-    const S eps = S(-sigma * h), cb = cos(beta);
-    return atan2(S(r_0 * cb), S(R_0 * cb * cb + eps * r_0 * sin(beta)));
+    const S eps = S(-sigma * h), cb = cos(beta), d = distance(sigma, beta).d;
+    return atan2(S(d * cb), S(R_0 * cb * cb + eps * d * sin(beta)));
   }
   /// Middle of the tooth space: the trace itself.
   [[nodiscard]] CutterCentre<S> middle(const S& beta) const {

@@ -17,8 +17,9 @@ void change_wall(bevel_gear::BevelWall<double>& wall, const bevel_gear::BevelGea
   const std::size_t w = wall.eps() < 0 ? 0 : 1;
   if (change.pressure_angle_rad[w] != 0 || change.equivalent_radius[w] != 0)
     wall.cutter = bevel_gear::make_finger_profile<double>(
-        p.pressure_angle_rad + change.pressure_angle_rad[w], gear.kappa_v() / (1 + change.equivalent_radius[w]),
-        p.dedendum_mm, c.module_mm, c.tip_radius_mm, c.rack_depth_mm, c.profile_height_mm);
+        {p.pressure_angle_rad + change.pressure_angle_rad[w], gear.kappa_v() / (1 + change.equivalent_radius[w]),
+         p.dedendum_mm, c.module_mm, c.tip_radius_mm, c.rack_depth_mm, c.profile_height_mm},
+        gear.cutter().law);
   const double turn = change.spiral_angle_rad[w];
   if (turn == 0) return;
   const double outer = std::cos(p.outer_spiral_angle_rad + turn);
@@ -111,6 +112,7 @@ Result<bevel_gear::BevelGear> bevel_mate(const bevel_gear::BevelGear& gear) {
   std::swap(p.teeth, p.mate_teeth);
   p.hand = -p.hand;
   p.pitch_angle_rad = 0;
+  p.modifications.clear();  // what the mate's drawing takes is not known
   bevel_gear::FingerCutterData cutter = gear.cutter_data();
   auto made = bevel_gear::BevelGear::make(p, cutter);
   if (auto* refused = made.refused()) {

@@ -84,12 +84,17 @@ struct Refusal {
 /// The sum of modifications of one flank.
 class Field {
  public:
+  /// A removal that is the product of both.
+  struct Term {
+    SmoothCurve over_depth, over_face;
+  };
   /// Those of `modifications` that meet this flank; amounts of zero are left out.
   /// Precondition: not `refused`.
   Field(const std::vector<Modification>& modifications, int side, int zone, const Rectangle& on);
 
   [[nodiscard]] bool empty() const { return terms_.empty(); }
   [[nodiscard]] const Rectangle& rectangle() const { return on_; }
+  [[nodiscard]] const std::vector<Term>& terms() const { return terms_; }
   /// Removed at a depth and a place along the face, mm.
   template <typename S>
   [[nodiscard]] S removal(const S& depth, const S& along) const {
@@ -99,9 +104,6 @@ class Field {
   }
 
  private:
-  struct Term {
-    SmoothCurve over_depth, over_face;
-  };
   void add(const Modification& m);
   void add_grid(const Grid& grid, double factor);
   Rectangle on_;

@@ -72,6 +72,13 @@ SmoothCurve SmoothCurve::spline(const std::vector<double>& x, const std::vector<
   return {x, std::move(pieces)};
 }
 
+double SmoothCurve::bent_to() const {
+  for (std::size_t k = pieces_.size(); k-- > 0;)
+    for (std::size_t n = 2; n < kMostTerms; ++n)
+      if (pieces_[k].c[n] != 0) return knots_[k + 1];
+  return knots_.front();
+}
+
 SmoothCurve SmoothCurve::mirrored(double sum) const {
   std::vector<double> knots;
   std::vector<Piece> pieces;

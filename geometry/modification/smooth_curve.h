@@ -59,6 +59,8 @@ class SmoothCurve {
   [[nodiscard]] Interval derivative(const Interval& x, std::size_t order) const;
 
   [[nodiscard]] const std::vector<double>& knots() const { return knots_; }
+  /// Where the last piece that bends ends; the first knot where none does.
+  [[nodiscard]] double bent_to() const;
 
  private:
   template <typename S>

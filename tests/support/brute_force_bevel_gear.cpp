@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/modified_flank.h"
+
 namespace toothpath::test {
 namespace {
 
@@ -67,27 +69,84 @@ double least_in(const F& f, double from, double to, int places, double enough, d
 
 }  // namespace
 
+namespace {
+
+/// Are these made by the path of the mill?
+bool over_face(modification::Kind kind) {
+  using modification::Kind;
+  return kind == Kind::end_relief || kind == Kind::lead_crowning || kind == Kind::helix_angle_slope;
+}
+
+TakenAtDepth taken_by_profile(const bevel_gear::BevelGearParameters& g) {
+  std::vector<modification::Modification> those;
+  for (const auto& m : g.modifications)
+    if (!over_face(m.kind) && m.amount_mm != 0) those.push_back(m);
+  if (those.empty()) return nullptr;
+  return [those, depth = 2 * g.addendum_mm](double y) {
+    double taken = 0;
+    for (const auto& m : those) taken += taken_by_the_words<double>(m, y, 0, depth, 0, 1);
+    return taken;
+  };
+}
+
+}  // namespace
+
 double least_of(const std::function<double(double)>& f, double from, double to, int places, double* at) {
   return least_in(f, from, to, places, -1e300, at);
 }
 
-PlainFingerMill::PlainFingerMill(const FingerMill& mill, double alpha, double r_v, double dedendum)
-    : r_v_(r_v), r_b_(r_v * std::cos(alpha)), r_0_(kPi * mill.module / 4), dedendum_(dedendum), r_t_(mill.tip_radius) {
+PlainFingerMill::PlainFingerMill(const FingerMill& mill, double alpha, double r_v, double dedendum, TakenAtDepth taken,
+                                 double bent_to, double addendum)
+    : taken_(std::move(taken)),
+      addendum_(addendum),
+      r_v_(r_v),
+      r_b_(r_v * std::cos(alpha)),
+      r_0_(kPi * mill.module / 4),
+      dedendum_(dedendum),
+      r_t_(mill.tip_radius) {
   // The tooth space of the equivalent gear: on the pitch circle half of it is r_0, on the base circle less by
   // inv(alpha).
   start_ = r_0_ / r_v - (std::tan(alpha) - alpha);
   // Where a rack of that depth ends on the line of action; not below the base circle.
   t_C_ = std::max(0.0, r_v * std::sin(alpha) - mill.rack_depth / std::sin(alpha));
   C_ = involute(t_C_);
-  const double sin_phi = C_.normal_x * -1, cos_phi = C_.normal_rho;
+  S_ = C_;
+  if (taken_) {
+    to_S_ = std::max(0.0, (C_.x - (addendum - bent_to)) / C_.normal_rho);
+    S_ = to_S_ > 0 ? modified([&](double back) { return plain_line(back); }, to_S_, 1e-5)
+                   : modified([&](double t) { return involute(t); }, t_C_, 1e-5 * r_b_ / std::max(t_C_, 1e-3));
+  }
+  const double sin_phi = S_.normal_x * -1, cos_phi = S_.normal_rho;
   x_o_ = r_t_ - dedendum;
-  rho_o_ = C_.rho + (x_o_ - C_.x) * sin_phi / cos_phi - r_t_ / cos_phi;
-  to_B_ = (x_o_ - r_t_ * sin_phi - C_.x) * cos_phi + (rho_o_ + r_t_ * cos_phi - C_.rho) * sin_phi;
+  rho_o_ = S_.rho + (x_o_ - S_.x) * sin_phi / cos_phi - r_t_ / cos_phi;
+  to_B_ = (x_o_ - r_t_ * sin_phi - S_.x) * cos_phi + (rho_o_ + r_t_ * cos_phi - S_.rho) * sin_phi;
   x_D_ = mill.profile_height;
   double low = t_C_, high = t_C_ + 40 * mill.module;
-  for (int k = 0; k < 100; ++k) (involute(0.5 * (low + high)).x < x_D_ ? low : high) = 0.5 * (low + high);
+  const auto place = [&](double t) {
+    return taken_ ? modified([&](double at) { return involute(at); }, t, 1e-5) : involute(t);
+  };
+  for (int k = 0; k < 100; ++k) (place(0.5 * (low + high)).x < x_D_ ? low : high) = 0.5 * (low + high);
   t_D_ = low;
-  rho_D_ = involute(t_D_).rho;
+  rho_D_ = place(t_D_).rho;
+}
+
+PlainFingerMill::Place PlainFingerMill::plain_line(double back) const {
+  return {C_.x - back * C_.normal_rho, C_.rho + back * C_.normal_x, C_.normal_x, C_.normal_rho};
+}
+
+PlainFingerMill::Place PlainFingerMill::modified(const std::function<Place(double)>& plain, double at,
+                                                 double step) const {
+  const auto moved = [&](double t) {
+    const Place q = plain(t);
+    const double c = taken_(addendum_ - q.x);
+    return Place{q.x + c * q.normal_x, q.rho + c * q.normal_rho, q.normal_x, q.normal_rho};
+  };
+  Place here = moved(at);
+  const Place a = moved(at - step), b = moved(at + step);
+  const double dx = b.x - a.x, dr = b.rho - a.rho, length = std::hypot(dx, dr), sign = dx > 0 ? 1 : -1;
+  here.normal_x = -sign * dr / length;
+  here.normal_rho = sign * dx / length;
+  return here;
 }
 
 /// The point of the involute whose tangent to the base circle is so long.
@@ -100,14 +159,20 @@ PlainFingerMill::Place PlainFingerMill::involute(double t) const {
 double PlainFingerMill::clearance(double x, double rho) const {
   const double to_flat = -dedendum_ - x;
   if (x >= x_D_) return rho - rho_D_;
-  const double sin_phi = -C_.normal_x, cos_phi = C_.normal_rho;
-  const double along = (x - C_.x) * cos_phi + (rho - C_.rho) * sin_phi;  // from C on the line, towards the shank
-  if (along >= 0) {
+  const double from_C = (x - C_.x) * C_.normal_rho - (rho - C_.rho) * C_.normal_x;  // on the line, towards the shank
+  if (from_C >= 0) {
     const double R = std::hypot(x + r_v_, rho), t = std::sqrt(std::max(0.0, R * R - r_b_ * r_b_));
     const double foot = r_b_ * (std::atan2(rho, x + r_v_) + std::atan2(t, r_b_) - start_);
-    return std::max(foot - t, to_flat);
+    // Of a modified flank the zero is exact, what is beside it by the cosine of its lean.
+    const double more = taken_ ? taken_(addendum_ - involute(foot).x) : 0;
+    return std::max(foot - t - more, to_flat);
   }
-  const double to_line = (x - C_.x) * C_.normal_x + (rho - C_.rho) * C_.normal_rho;
+  const double sin_phi = -S_.normal_x, cos_phi = S_.normal_rho;
+  const double along = (x - S_.x) * cos_phi + (rho - S_.rho) * sin_phi;
+  if (taken_ && along >= 0)
+    return std::max(
+        (x - C_.x) * C_.normal_x + (rho - C_.rho) * C_.normal_rho - taken_(addendum_ - plain_line(-from_C).x), to_flat);
+  const double to_line = (x - S_.x) * S_.normal_x + (rho - S_.rho) * S_.normal_rho;
   if (along >= to_B_) return std::max(to_line, to_flat);
   const double u = x - x_o_, v = rho - rho_o_;
   if (v <= 0 || (u > 0 && to_line < 0)) return std::max(to_line, to_flat);
@@ -115,7 +180,7 @@ double PlainFingerMill::clearance(double x, double rho) const {
 }
 
 std::vector<PlainFingerMill::Place> PlainFingerMill::places(double to_x, int count) const {
-  const double phi = std::atan2(-C_.normal_x, C_.normal_rho), arc = r_t_ * (kPi / 2 - phi), line = -to_B_;
+  const double phi = std::atan2(-S_.normal_x, S_.normal_rho), arc = r_t_ * (kPi / 2 - phi), line = to_S_ - to_B_;
   double t_end = t_C_, high = t_D_;
   for (int k = 0; k < 60; ++k) {
     const double t = 0.5 * (t_end + high);
@@ -129,11 +194,14 @@ std::vector<PlainFingerMill::Place> PlainFingerMill::places(double to_x, int cou
     if (s < arc) {
       const double a = kPi - s / r_t_;  // direction in (x, rho): from -x to the normal of the line
       out.push_back({x_o_ + r_t_ * std::cos(a), rho_o_ + r_t_ * std::sin(a), std::cos(a), std::sin(a)});
+    } else if (s < arc + line - to_S_) {
+      const double back = arc + line - to_S_ - s;
+      out.push_back({S_.x - back * S_.normal_rho, S_.rho + back * S_.normal_x, S_.normal_x, S_.normal_rho});
     } else if (s < arc + line) {
-      const double back = arc + line - s;
-      out.push_back({C_.x - back * C_.normal_rho, C_.rho + back * C_.normal_x, C_.normal_x, C_.normal_rho});
+      out.push_back(modified([&](double back) { return plain_line(back); }, arc + line - s, 1e-5));
     } else {
-      out.push_back(involute(std::sqrt(t_C_ * t_C_ + 2 * r_b_ * (s - arc - line))));
+      const double t = std::sqrt(t_C_ * t_C_ + 2 * r_b_ * (s - arc - line));
+      out.push_back(taken_ ? modified([&](double at) { return involute(at); }, t, 1e-5) : involute(t));
     }
   }
   return out;
@@ -146,9 +214,9 @@ double PlainFingerMill::radius_at(double x) const {
 }
 
 std::array<double, 2> PlainFingerMill::largest_tip_radii() const {
-  const double sin_phi = -C_.normal_x, cos_phi = C_.normal_rho;
-  const double line_at_flat = C_.rho - (C_.x + dedendum_) * sin_phi / cos_phi;
-  return {line_at_flat * cos_phi / (1 - sin_phi), (C_.x + dedendum_) / (1 - sin_phi)};
+  const double sin_phi = -S_.normal_x, cos_phi = S_.normal_rho;
+  const double line_at_flat = S_.rho - (S_.x + dedendum_) * sin_phi / cos_phi;
+  return {line_at_flat * cos_phi / (1 - sin_phi), (S_.x + dedendum_) / (1 - sin_phi)};
 }
 
 double BruteForceBevelGear::pitch_angle_of(const bevel_gear::BevelGearParameters& g) {
@@ -169,7 +237,9 @@ BruteForceBevelGear::BruteForceBevelGear(const bevel_gear::BevelGearParameters& 
       pitch_(2 * kPi / g.teeth),
       herringbone_(g.form == bevel_gear::BevelForm::herringbone),
       inner_hand_(g.hand),
-      mill_(mill, g.pressure_angle_rad, R_0_ * sin_d_ / cos_d_, g.dedendum_mm),
+      lean_(g.pressure_angle_rad + kPi * mill.module / 4 / (R_0_ * sin_d_ / cos_d_)),
+      mill_(mill, g.pressure_angle_rad, R_0_ * sin_d_ / cos_d_, g.dedendum_mm, taken_by_profile(g), 2 * g.addendum_mm,
+            g.addendum_mm),
       paths_{path_of(1), path_of(-1)} {
   for (Path& path : paths_) tabulate(path);
 }
@@ -182,11 +252,22 @@ double BruteForceBevelGear::trace(double R, int hand) const {
   return 2 * hand * ((std::tan(at_ref) - at_ref) - (std::tan(here) - here));
 }
 
-/// Cone distance of the foot of the equidistant's point at R_c.
-double BruteForceBevelGear::foot_of(double R_c, int eps) const {
-  const double r = mill_.half_width();
+double BruteForceBevelGear::width_at(double R, int sigma, bool outer) const {
+  const double groove = herringbone_ ? gear_.relief_half_width_mm : 0;
+  const double from = outer ? R_ref_ + groove : R_i_, to = herringbone_ && !outer ? R_ref_ - groove : R_e_;
+  double taken = 0;
+  for (const auto& m : gear_.modifications)
+    if (over_face(m.kind) && m.amount_mm != 0 && m.meets(-sigma, outer ? 1 : 0))
+      taken += taken_by_the_words<double>(m, 0, R, 2 * gear_.addendum_mm, from, to);
+  return mill_.half_width() - taken / std::cos(lean_);
+}
+
+/// Cone distance of the foot of the path's point at R_c.
+double BruteForceBevelGear::foot_of(double R_c, int sigma, int hand) const {
+  const int eps = -sigma * hand;
   double R = std::min(R_c, R_0_);
   for (int k = 0; k < 60; ++k) {  // R^2 + r^2 + 2 eps R r sin(beta) = R_c^2
+    const double r = width_at(R, sigma, is_outer(hand));
     const double side = eps * r * std::sin(beta(R));
     const double next = std::min(R_0_, std::sqrt(std::max(0.0, R_c * R_c - r * r + side * side)) - side);
     if (std::abs(next - R) < 1e-14 * R_c) return next;
@@ -197,15 +278,18 @@ double BruteForceBevelGear::foot_of(double R_c, int eps) const {
 
 double BruteForceBevelGear::on_equidistant(double R_c, int sigma, int hand) const {
   const int eps = -sigma * hand;
-  const double R = foot_of(R_c, eps), b = beta(R), r = mill_.half_width();
+  const double R = foot_of(R_c, sigma, hand), b = beta(R), r = width_at(R, sigma, is_outer(hand));
   return trace(R, hand) + sigma * (std::atan2(r * std::cos(b), R + eps * r * std::sin(b)) - half_space_ * sin_d_);
 }
 
 BruteForceBevelGear::Path BruteForceBevelGear::path_of(int sigma) const {
   Path path;
   path.sigma = sigma;
+  const auto centre = [&](double R, int eps) {
+    const double r = width_at(R, sigma, is_outer(-sigma * eps));
+    return std::sqrt(R * R + r * r + 2 * eps * R * r * std::sin(beta(R)));
+  };
   const double r = mill_.half_width();
-  const auto centre = [&](double R, int eps) { return std::sqrt(R * R + r * r + 2 * eps * R * r * std::sin(beta(R))); };
   const auto overrun = [&](double R) {
     return 1.25 * mill_.largest_radius() * std::sin(beta(R)) + 0.1 * gear_.outer_transverse_module_mm;
   };
@@ -245,7 +329,14 @@ BruteForceBevelGear::Path BruteForceBevelGear::path_of(int sigma) const {
 double BruteForceBevelGear::polar(const Path& path, double R_c) const {
   if (R_c > path.straight) return path.straight_angle - std::asin(path.straight_foot / R_c);
   if (herringbone_ && R_c > path.corner_from && R_c < path.corner_to) {
-    const double r = mill_.half_width();
+    // About the corner of the trace, evenly from one distance to the other with the direction.
+    const double inner = width_at(R_ref_, path.sigma, false), outer = width_at(R_ref_, path.sigma, true);
+    double r = inner, low = 0, high = 1;
+    for (int k = 0; k < 60; ++k) {
+      const double t = 0.5 * (low + high), turn = kPi / 2 + beta(R_ref_) * (1 - 2 * t);
+      r = inner + (outer - inner) * t;
+      (std::hypot(R_ref_ + r * std::cos(turn), r * std::sin(turn)) < R_c ? low : high) = t;
+    }
     const double c = (R_c * R_c + R_ref_ * R_ref_ - r * r) / (2 * R_c * R_ref_);
     return path.sigma * (std::acos(std::min(1.0, c)) - half_space_ * sin_d_);
   }

@@ -21,12 +21,17 @@ struct FingerMill {
 [[nodiscard]] double least_of(const std::function<double(double)>& f, double from, double to, int places,
                               double* at = nullptr);
 
+/// What a mill takes more than the plain one at a depth below the tip of the teeth.
+using TakenAtDepth = std::function<double(double)>;
+
 /// A finger mill as a body of revolution. x along its axis from the pitch cone towards the shank, the flat tip at
 /// -dedendum.
 class PlainFingerMill {
  public:
-  /// @param base_radius of the equivalent gear  @param pitch_radius of it
-  PlainFingerMill(const FingerMill& mill, double pressure_angle, double pitch_radius, double dedendum);
+  /// @param pitch_radius of the equivalent gear
+  /// @param taken  null: nothing; its bends end at the depth `bent_to`  @param addendum  where the depth begins
+  PlainFingerMill(const FingerMill& mill, double pressure_angle, double pitch_radius, double dedendum,
+                  TakenAtDepth taken = nullptr, double bent_to = 0, double addendum = 0);
   /// Distance of a point to the solid, positive outside; exact near the surface, elsewhere of the right sign.
   [[nodiscard]] double clearance(double x, double rho) const;
   struct Place {
@@ -43,6 +48,14 @@ class PlainFingerMill {
 
  private:
   [[nodiscard]] Place involute(double tangent) const;
+  /// On the straight below C, `back` from it, without modification.
+  [[nodiscard]] Place plain_line(double back) const;
+  /// A place of the plain flank moved by what is taken there, and turned by its slope.
+  [[nodiscard]] Place modified(const std::function<Place(double)>& plain, double at, double step) const;
+  TakenAtDepth taken_;
+  double addendum_ = 0;
+  double to_S_ = 0;  ///< from C back to where the straight of a modified mill begins; S_ is that place
+  Place S_;
   double r_v_, r_b_, r_0_, start_, dedendum_, r_t_, t_C_, t_D_, x_D_, rho_D_;
   Place C_;
   double x_o_ = 0, rho_o_ = 0, to_B_ = 0;
@@ -99,7 +112,10 @@ class BruteForceBevelGear {
   [[nodiscard]] double beta(double R) const;
   [[nodiscard]] double trace(double R, int hand) const;
   [[nodiscard]] int hand_of(bool outer) const { return outer ? -inner_hand_ : inner_hand_; }
-  [[nodiscard]] double foot_of(double R_c, int eps) const;
+  /// Half width of the mill less what its path takes at this foot; the middle of the face decides the half.
+  [[nodiscard]] double width_at(double R, int sigma, bool outer) const;
+  [[nodiscard]] double foot_of(double R_c, int sigma, int hand) const;
+  [[nodiscard]] bool is_outer(int hand) const { return herringbone_ && hand != inner_hand_; }
   [[nodiscard]] double on_equidistant(double R_c, int sigma, int hand) const;
   [[nodiscard]] double polar(const Path& path, double R_c) const;
   [[nodiscard]] Path path_of(int sigma) const;
@@ -113,6 +129,7 @@ class BruteForceBevelGear {
   double delta_, sin_d_, cos_d_, R_e_, R_i_, R_0_, R_ref_, half_space_, pitch_;
   bool herringbone_;
   int inner_hand_;
+  double lean_;  ///< of the mill's flank at the pitch cone, against its axis
   PlainFingerMill mill_;
   std::array<Path, 2> paths_;  // L, U
 };

@@ -79,10 +79,10 @@ void dxf_tables(Dxf& d) {
 double chord_error(const bevel_gear::FingerProfile<double>& c, const std::vector<double>& parameters) {
   double worst = 0;
   for (std::size_t i = 0; i + 1 < parameters.size(); ++i) {
-    const auto a = c.involute(parameters[i]), b = c.involute(parameters[i + 1]);
+    const auto a = c.flank(parameters[i]), b = c.flank(parameters[i + 1]);
     const double dx = b.x - a.x, dr = b.rho - a.rho, length = std::hypot(dx, dr);
     for (int k = 1; k < 8; ++k) {
-      const auto q = c.involute(parameters[i] + (parameters[i + 1] - parameters[i]) * k / 8);
+      const auto q = c.flank(parameters[i] + (parameters[i + 1] - parameters[i]) * k / 8);
       worst = std::max(worst, std::abs((q.x - a.x) * dr - (q.rho - a.rho) * dx) / length);
     }
   }
@@ -119,9 +119,8 @@ CutterDxf cutter_dxf(const bevel_gear::FingerProfile<double>& c, double length, 
   out.vertices = static_cast<int>(parameters.size());
   Dxf d;
   for (const auto& note : notes) d.group(999, plain(note));
-  d.group(999,
-          fmt::format("mm, 1:1; X from the tip along the axis, Y radius; involute as polyline, chord error {:.6f} mm",
-                      out.chord_error_mm));
+  d.group(999, fmt::format("mm, 1:1; X from the tip along the axis, Y radius; {} as polyline, chord error {:.6f} mm",
+                           c.law ? "modified flank" : "involute", out.chord_error_mm));
   d.group(0, "SECTION"), d.group(2, "HEADER");
   d.group(9, "$ACADVER"), d.group(1, "AC1009");
   d.group(9, "$EXTMIN"), d.number(10, 0), d.number(20, -c.rho_D), d.number(30, 0);
@@ -139,7 +138,7 @@ CutterDxf cutter_dxf(const bevel_gear::FingerProfile<double>& c, double length, 
     d.line("CONTOUR", at(c.x_B, s * c.rho_B), at(c.x_C, s * c.rho_C));
     std::vector<Point> points;
     for (const double p : parameters) {
-      const auto q = c.involute(p);
+      const auto q = c.flank(p);
       points.push_back(at(q.x, s * q.rho));
     }
     d.polyline("CONTOUR", points);

@@ -41,6 +41,7 @@ std::string order_table(const bevel_gear::CutterJudgement& j) {
   row("pressure angle", fmt::format("{:.4f}\u00b0", degrees(c.alpha_n)));
   row("equivalent radius r<sub>v</sub>",
       c.kappa_v > 0 ? fmt::format("{:.4f}", 1 / c.kappa_v) : std::string("straight"));
+  if (c.law) row("flank", "modified: profile table and DXF say it");
   row("tip to pitch line h<sub>f</sub>", fmt::format("{:.4f}", c.h_f));
   row("tip radius r<sub>t</sub>", fmt::format("{:.4f}", c.r_t));
   row("flat of the tip", fmt::format("\u00d8{:.4f}", 2 * c.rho_o));
@@ -105,10 +106,10 @@ std::string profile_table(const bevel_gear::FingerProfile<double>& c) {
   row("B, arc to straight", c.x_B, c.rho_B, c.phi);
   constexpr int kSteps = 11;
   for (int k = 0; k <= kSteps; ++k) {
-    const auto q = c.involute(c.p_C + (c.p_D - c.p_C) * k / kSteps);
-    row(k == 0        ? "C, straight to involute"
-        : k == kSteps ? "D, involute to cylinder"
-                      : "involute",
+    const auto q = c.flank(c.p_C + (c.p_D - c.p_C) * k / kSteps);
+    row(k == 0        ? (c.law ? "C, straight to flank" : "C, straight to involute")
+        : k == kSteps ? (c.law ? "D, flank to cylinder" : "D, involute to cylinder")
+                      : (c.law ? "modified flank" : "involute"),
         q.x, q.rho, std::atan2(q.sin_psi, q.cos_psi));
   }
   return out + "</tbody></table>";
