@@ -109,7 +109,7 @@ face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::Tabl
   return p;
 }
 
-bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear) {
+bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear, const std::string& directory) {
   bevel_gear::BevelGearParameters p;
   p.teeth = gear.integer("teeth", kTeeth).value_or(0);
   const bool mate = gear.has("mate_teeth"), angle = gear.has("pitch_angle");
@@ -143,10 +143,7 @@ bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear) {
   p.backlash_mm = gear.number_or("backlash", kLengthOrZero, p.backlash_mm);
   if (module && p.backlash_mm >= *module)
     gear.refuse("backlash", "backlash = {} mm is not below outer_transverse_module = {} mm", p.backlash_mm, *module);
-  if (gear.misplaced("modification"))
-    gear.refuse("modification",
-                "modification is not known for bevel gears: their flanks are those that the profile of the finger mill "
-                "leaves; only face gears are modified");
+  p.modifications = read_modifications(gear, directory);
   optional_cylinder(gear, "hub", p.hub_diameter_mm, p.hub_length_mm);
   optional_cylinder(gear, "shaft", p.shaft_diameter_mm, p.shaft_length_mm);
   if (p.face_width_mm > 0 && p.pitch_angle_rad > 0 && module && p.teeth > 0) {
@@ -179,7 +176,7 @@ constexpr GearType kGearTypes[] = {
      }},
     {"equal_base_circle_bevel_gear",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
-       job.gear = read_bevel_gear(gear);
+       job.gear = read_bevel_gear(gear, job.directory());
        if (root.misplaced("stock"))
          root.refuse("stock", "[stock] belongs to face gears; this gear is {}", job.gear_type());
      }},

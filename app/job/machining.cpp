@@ -364,7 +364,9 @@ ContactSettings read_contact(toml::TableReader& table, const Job& job) {
   c.compound_mm = table.number_or("compound", kCompound, c.compound_mm);
   if (job.face_gear()) c.modifications = read_modifications(table, job.directory());
   else if (table.misplaced("modification"))
-    table.refuse("modification", "modification belongs to face gears and their pinions; this gear is {}",
+    table.refuse("modification",
+                 "modification belongs to the pinions of face gears; this gear is {}, whose mate has a job of its "
+                 "own: [[gear.modification]] there, and --mate",
                  job.gear_type());
   if (auto load = table.table("load")) c.load = read_contact_load(*load);
   table.finish();

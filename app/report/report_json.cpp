@@ -435,7 +435,14 @@ Json modifications_json(const ModifiedFlanks& modified) {
     }
     zones.push_back(std::move(one));
   }
-  return {{"list", std::move(list)}, {"zones", std::move(zones)}};
+  Json out = {{"list", std::move(list)}, {"zones", std::move(zones)}};
+  if (modified.walls) {
+    const bevel_gear::ModifiedForm& f = *modified.walls;
+    out["walls"] = {{"profile_um", f.profile_mm * 1000}, {"profile_turned_mrad", f.profile_turned_rad * 1000},
+                    {"lead_um", f.lead_mm * 1000},       {"lead_turned_mrad", f.lead_turned_rad * 1000},
+                    {"top_land_mm", f.top_land_mm},      {"plain_top_land_mm", f.plain_top_land_mm}};
+  }
+  return out;
 }
 
 }  // namespace
@@ -443,7 +450,7 @@ Json modifications_json(const ModifiedFlanks& modified) {
 double ModifiedFlanks::most_removed_mm() const {
   double most = 0;
   for (const Zone& z : zones) most = std::max(most, z.form.removed_mm.value);
-  return most;
+  return walls ? walls->profile_mm + walls->lead_mm : most;
 }
 
 std::string report_json(const RunReport& r) {

@@ -14,6 +14,7 @@
 #include "app/report/scene_report.h"
 #include "app/report/section.h"
 #include "cam/proof/verification.h"
+#include "geometry/bevel_gear/gear.h"
 #include "geometry/face_gear/flank_field.h"
 #include "geometry/inspection/tooth_index.h"
 #include "postproc/bodies/moves.h"
@@ -51,7 +52,8 @@ struct ModifiedFlanks {
     face_gear::ModifiedForm form;
   };
   std::vector<modification::Modification> list;
-  std::vector<Zone> zones;  ///< those that are modified
+  std::vector<Zone> zones;                             ///< those that are modified, of face gears
+  std::optional<bevel_gear::ModifiedForm> walls = {};  ///< of bevel gears
   [[nodiscard]] double most_removed_mm() const;
 };
 

@@ -336,6 +336,36 @@ const OutputForm& form_of(int job) {
   return *forms[std::size_t(job) % forms.size()];
 }
 
+/// Judges a program against the gear of its job.
+void judge_run(const job::Job& job, const OutputForm& form, const JudgedRun& run, int number, bool plant,
+               Random& random) {
+  ASSERT_EQ(run.outcome.exit_code, app::ExitCode::ok) << to_text(run.outcome.errors);
+  const BevelJudge judge(job, run.program, run.machine_text);
+  ASSERT_TRUE(judge.faults().empty()) << judge.faults().front();
+  ASSERT_GT(judge.cuts().size(), 100u);
+  if (job.bevel_gear()->form == bevel_gear::BevelForm::herringbone) {
+    EXPECT_LE(judge.gear().fillet_reach(), job.bevel_gear()->relief_half_width_mm);
+  }
+  const auto first = judge.in_space(judge.first_space()), looked_at = judge.to_judge(1);
+  const Deepest gouge = judge.deepest(looked_at);
+  const double root = judge.below_root(looked_at);
+  const auto walls = judge.walls(first, 2);
+  const auto& operations = job.operations;
+  const double bound = run.report["gouge_um"]["bound"].get<double>(),
+               most_left = run.report["excess_um"]["finished"]["bound"].get<double>(),
+               ridge = judge.ridges(first, operations.front().ridge_mm, 3),
+               chord = operations.back().chord_tolerance_mm;
+  std::printf(
+      "%2d %-22s z %2d, %5zu cuts, %4zu looked at: gouge %.2f um (walls %.2f, root %.2f), proven %.2f, left %.2f um, "
+      "proven %.2f, ridge %.2f um above what was asked\n",
+      number, form.name().c_str(), job.bevel_gear()->teeth, judge.cuts().size(), looked_at.size(), 1e3 * gouge.depth,
+      -1e3 * walls[1], 1e3 * root, bound, 1e3 * walls[0], most_left, 1e3 * ridge);
+  EXPECT_LE(std::max({gouge.depth, root, -walls[1]}), 1e-3 * bound + kBevelSlack) << "line " << gouge.line;
+  EXPECT_LE(walls[0], std::min(1e-3 * most_left, chord + 1.5e-3) + kBevelSlack);
+  EXPECT_LE(ridge, kBevelSlack);
+  if (plant) expect_planted_faults_seen(judge, job, run, gouge.depth, random);
+}
+
 TEST(JudgedBevelJobs, CutTheGearAndNothingElseInEveryForm) {
   const int jobs = jobs_asked(6);
   int done = 0;
@@ -352,31 +382,65 @@ TEST(JudgedBevelJobs, CutTheGearAndNothingElseInEveryForm) {
         EXPECT_TRUE(refused_for_a_reason(error.message, job.value())) << error.text();
       continue;
     }
-    ASSERT_EQ(run.outcome.exit_code, app::ExitCode::ok) << to_text(run.outcome.errors);
-    const BevelJudge judge(job.value(), run.program, run.machine_text);
-    ASSERT_TRUE(judge.faults().empty()) << judge.faults().front();
-    ASSERT_GT(judge.cuts().size(), 100u);
-    if (job.value().bevel_gear()->form == bevel_gear::BevelForm::herringbone) {
-      EXPECT_LE(judge.gear().fillet_reach(), job.value().bevel_gear()->relief_half_width_mm);
+    judge_run(job.value(), form, run, seed, done % 2 == 0, random);
+    if (HasFatalFailure()) return;
+    ++done;
+  }
+  EXPECT_EQ(done, jobs);
+}
+
+/// What a finger mill can take off the flanks of a gear, in shares of its tooth and face.
+std::string random_modifications(const bevel_gear::BevelGearParameters& p, Random& random) {
+  std::string text;
+  const double h = p.addendum_mm, face = 0.2 * p.face_width_mm;
+  const auto add = [&](const char* kind, double amount, const std::string& more = "") {
+    text += fmt::format("[[gear.modification]]\nkind = \"{}\"\namount = {:.5f}\n{}", kind, amount, more);
+  };
+  const auto flank = [&] {
+    const double which = random(0, 3);
+    return which < 1 ? std::string() : fmt::format("flank = \"{}\"\n", which < 2 ? "left" : "right");
+  };
+  add("tip_relief", random(0.002, 0.008) * h, fmt::format("length = {:.4f}\n", random(0.3, 0.8) * h));
+  add("root_relief", random(0.001, 0.004) * h,
+      fmt::format("length = {:.4f}\nlaw = \"linear\"\n", random(0.3, 0.6) * h));
+  add("profile_crowning", random(-0.001, 0.003) * h);
+  add("pressure_angle_slope", random(-0.002, 0.002) * h);
+  add("lead_crowning", random(0.0005, 0.001) * p.face_width_mm, flank());
+  add("helix_angle_slope", random(-0.0005, 0.0005) * p.face_width_mm, flank());
+  add("end_relief", random(0.001, 0.004) * h,
+      fmt::format("length = {:.4f}\nend = \"{}\"\n{}", random(0.6, 1) * face, random(0, 1) < 0.5 ? "inner" : "outer",
+                  flank()));
+  return text;
+}
+
+/// Modified gears: proven against the modified flank, and of the plain one a part is gone that the judge sees.
+TEST(JudgedBevelJobs, CutModifiedGearsAsTheWordsSay) {
+  const int jobs = jobs_asked(3);
+  int done = 0;
+  for (int seed = 0; seed < 10 * jobs && done < jobs; ++seed) {
+    Random random{std::uint64_t(9500 + seed)};
+    const OutputForm& form = form_of(done);
+    std::string text = on_its_machine(random_judged_bevel_job(random, is_coarse(form.control) ? 0.0015 : 0.0005));
+    const auto plain = job::parse_job(text, "job.toml");
+    ASSERT_TRUE(plain) << to_text(plain.error()) << text;
+    replace_once(text, "[machine]", random_modifications(*plain.value().bevel_gear(), random) + "[machine]");
+    const auto job = job::parse_job(text, "job.toml");
+    ASSERT_TRUE(job) << to_text(job.error()) << text;
+    const JudgedRun run = run_judged(text, form, random);
+    SCOPED_TRACE(form.name() + "\n" + text + run.machine_text);
+    if (run.outcome.exit_code == app::ExitCode::refused) {
+      for (const Diagnostic& error : run.outcome.errors)
+        EXPECT_TRUE(refused_for_a_reason(error.message, job.value()) ||
+                    error.message.find("modification") != std::string::npos)
+            << error.text();
+      continue;
     }
-    const auto first = judge.in_space(judge.first_space()), looked_at = judge.to_judge(1);
-    const Deepest gouge = judge.deepest(looked_at);
-    const double root = judge.below_root(looked_at);
-    const auto walls = judge.walls(first, 2);
-    const auto& operations = job.value().operations;
-    const double bound = run.report["gouge_um"]["bound"].get<double>(),
-                 most_left = run.report["excess_um"]["finished"]["bound"].get<double>(),
-                 ridge = judge.ridges(first, operations.front().ridge_mm, 3),
-                 chord = operations.back().chord_tolerance_mm;
-    std::printf(
-        "%2d %-22s z %2d, %5zu cuts, %4zu looked at: gouge %.2f um (walls %.2f, root %.2f), proven %.2f, left %.2f um, "
-        "proven %.2f, ridge %.2f um above what was asked\n",
-        seed, form.name().c_str(), job.value().bevel_gear()->teeth, judge.cuts().size(), looked_at.size(),
-        1e3 * gouge.depth, -1e3 * walls[1], 1e3 * root, bound, 1e3 * walls[0], most_left, 1e3 * ridge);
-    EXPECT_LE(std::max({gouge.depth, root, -walls[1]}), 1e-3 * bound + kBevelSlack) << "line " << gouge.line;
-    EXPECT_LE(walls[0], std::min(1e-3 * most_left, chord + 1.5e-3) + kBevelSlack);
-    EXPECT_LE(ridge, kBevelSlack);
-    if (done % 2 == 0) expect_planted_faults_seen(judge, job.value(), run, gouge.depth, random);
+    judge_run(job.value(), form, run, seed, done == 1, random);
+    if (HasFatalFailure()) return;
+    const BevelJudge of_plain(plain.value(), run.program, run.machine_text);
+    const auto walls = of_plain.walls(of_plain.in_space(of_plain.first_space()), 2);
+    std::printf("   of the plain flanks %.1f um are gone\n", -1e3 * walls[1]);
+    EXPECT_LT(walls[1], -0.003 * job.value().bevel_gear()->addendum_mm) << "the judge does not see the modifications";
     ++done;
   }
   EXPECT_EQ(done, jobs);

@@ -10,8 +10,10 @@
 #include "geometry/face_gear/inverse.h"
 #include "geometry/face_gear/limits.h"
 #include "geometry/inspection/grid.h"
+#include "geometry/mesh/bevel_mesh.h"
 #include "tests/app/judged.h"
 #include "tests/app/program.h"
+#include "tests/support/brute_force_bevel_gear.h"
 #include "tests/support/modified_flank.h"
 
 namespace toothpath::test {
@@ -171,6 +173,82 @@ TEST(ModifiedGear, WithoutAmountsEveryByteIsThatOfThePlainGear) {
     EXPECT_EQ(file_text(dir / (std::string("plain_contact/") + file)),
               file_text(dir / (std::string("zero_contact/") + file)))
         << file;
+}
+
+/// The bevel pinion of the samples with a narrow face, these modifications, and coarser passes.
+std::string bevel_job(const std::string& modifications) {
+  std::string text = file_text(kSamples + "/bevel_pinion.toml");
+  replace_in(text, "[machine]", modifications + "\n[machine]");
+  replace_in(text, "chord_tolerance = 0.0005", "chord_tolerance = 0.001");
+  return text;
+}
+
+TEST(ModifiedBevelGear, WithoutAmountsEveryByteIsThatOfThePlainGear) {
+  const TestDir dir;
+  std::string zero = kModifications;
+  for (std::size_t at = 0; (at = zero.find("amount = ", at)) != std::string::npos; ++at)
+    zero.replace(at, zero.find('\n', at) - at, "amount = 0");
+  for (const auto& [name, text] : {std::pair("plain", bevel_job("")), {"zero", bevel_job(zero)}}) {
+    write_file(dir / "job.toml", text);
+    ASSERT_EQ(run_program({"run", dir / "job.toml", "--step", "--out", dir / name}).exit_code, 0);
+    ASSERT_EQ(run_program({"contact", dir / "job.toml", "--mate", kSamples + "/bevel_wheel.toml", "--out",
+                           dir / (std::string(name) + "_contact")})
+                  .exit_code,
+              0);
+    ASSERT_EQ(run_program({"cutter", dir / "job.toml", "--out", dir / (std::string(name) + "_cutter")}).exit_code, 0);
+  }
+  for (const char* file : {"/program.ngc", "/cl.csv", "/setup.html", "/gear.stl", "/gear.step", "/tooth.vtp",
+                           "/inspection.csv", "/limits.json", "_contact/contact.csv", "_contact/transmission.csv",
+                           "_contact/contact.json", "_cutter/cutter.json", "_cutter/cutter.html"})
+    EXPECT_EQ(file_text(dir / (std::string("plain") + file)), file_text(dir / (std::string("zero") + file))) << file;
+}
+
+/// The nominal of inspection is the modified wall: no place of the solid mill of the words is farther from its points
+/// than its tables, and the plain mill leaves much.
+TEST(ModifiedBevelGear, InspectionPointsLieOnTheWallsOfTheWords) {
+  const auto job = job::read_job_file(kSamples + "/bevel_modified.toml");
+  ASSERT_TRUE(job.value_if());
+  const auto gear = process::make_bevel_gear(*job.value_if());
+  ASSERT_TRUE(gear.value_if());
+  auto parameters = gear.value_if()->parameters();
+  const auto& c = gear.value_if()->cutter_data();
+  const FingerMill mill{c.module_mm, c.tip_radius_mm, c.rack_depth_mm, c.profile_height_mm};
+  const BruteForceBevelGear words(parameters, mill);
+  parameters.modifications.clear();
+  const BruteForceBevelGear plain(parameters, mill);
+  const auto grid = mesh::bevel_inspection_grid(*gear.value_if());
+  ASSERT_TRUE(grid);
+  double off = 0, seen = 0;
+  for (const auto& p : *grid) {
+    off = std::max(off, std::abs(words.clearance(p.p)));
+    seen = std::max(seen, plain.clearance(p.p));
+    EXPECT_GT(words.clearance(p.p - 0.01 * p.n), 0.005);
+  }
+  std::printf("  %zu points: %.1e mm beside the words, up to %.1f um beside the plain walls\n", grid->size(), off,
+              1e3 * seen);
+  EXPECT_LT(off, 1e-7);
+  EXPECT_GT(seen, 0.02);
+}
+
+/// What a mill cannot make stands in the job, and the refusal says where and what would do.
+TEST(ModifiedBevelGear, RefusalsNameTheirPlace) {
+  const TestDir dir;
+  for (const auto& [modification, words] : {std::pair(R"([[gear.modification]]
+kind = "twist"
+amount = 0.01)",
+                                                      "twist of 0.01 mm changes along the face with the depth"),
+                                            {R"([[gear.modification]]
+kind = "tip_relief"
+amount = 0.01
+length = 1.0
+flank = "left")",
+                                             "one mill cuts both flanks"}}) {
+    write_file(dir / "job.toml", bevel_job(modification));
+    const auto run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
+    EXPECT_EQ(run.exit_code, 3);
+    EXPECT_NE(run.err.find("job.toml:"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+  }
 }
 
 /// Crowning of the gear and a relief of the pinion take contact and load off the edges.

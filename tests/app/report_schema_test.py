@@ -79,6 +79,7 @@ with tempfile.TemporaryDirectory() as folder:
         ("run", 0, ["samples/dhfg_t600s.toml"]),
         ("surface", 0, ["samples/offset_milled.toml"]),
         ("surface", 0, ["samples/spur_modified.toml"]),
+        ("surface", 0, ["samples/bevel_modified.toml"]),
         ("surface", 0, ["samples/bevel_wheel.toml"]),
         ("surface", 0, ["samples/spur_quick.toml", "--step"]),
         ("shaper", 0, ["samples/offset_shaped.toml"]),

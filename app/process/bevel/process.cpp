@@ -120,6 +120,7 @@ class BevelProcess final : public process::GearProcess {
     const auto& p = gear_.parameters();
     part_ = {p.teeth, 2 * (gear_.R_e() * gear_.sin_delta() + p.addendum_mm * gear_.cos_delta()),
              2 * clearance_body(gear_).radius_mm, gear_.warnings()};
+    if (gear_.modified()) part_.modified = report::ModifiedFlanks{p.modifications, {}, gear_.modified()};
   }
 
   [[nodiscard]] const process::PartFacts& part() const override { return part_; }

@@ -21,6 +21,15 @@ std::string zone_words(const report::ModifiedFlanks::Zone& z) {
       length_or_dash(f.plain_hollow_fillet_mm), f.land_mm.value, f.plain_land_mm);
 }
 
+/// What profile and path of a finger mill take.
+std::string wall_words(const bevel_gear::ModifiedForm& f) {
+  return fmt::format(
+      "The profile of the mill takes up to {:.2f} um and turns normals by {:.2f} mrad; its paths take up to {:.2f} um "
+      "at the pitch cone and turn by {:.2f} mrad; the top land at the small end is {:.3f} mm (plain: {:.3f}).",
+      f.profile_mm * app::kUm, f.profile_turned_rad * 1000, f.lead_mm * app::kUm, f.lead_turned_rad * 1000,
+      f.top_land_mm, f.plain_top_land_mm);
+}
+
 }  // namespace
 
 /// What the drawing takes off the plain flanks, and what it comes to.
@@ -40,6 +49,7 @@ report::Section modifications(const SectionInput& input) {
                             to_string(m.flanks), m.zone ? fmt::format("{}", *m.zone) : "all"});
   }
   for (const auto& z : input.report.modified->zones) section.note += (section.note.empty() ? "" : " ") + zone_words(z);
+  if (input.report.modified->walls) section.note = wall_words(*input.report.modified->walls);
   section.note += " Gouge and left material, inspection points and meshes count from the modified flanks.";
   return section;
 }
