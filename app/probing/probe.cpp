@@ -1,6 +1,7 @@
 // `toothpath probe JOB`: a program that touches a blank or teeth that are there, or, with its results, where they
 // stand.
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/commands/command.h"
@@ -12,6 +13,8 @@
 #include "app/probing/touch_file.h"
 #include "app/process/gear_of_job.h"
 #include "app/process/opening_and_end.h"
+#include "geometry/inspection/bevel_touches.h"
+#include "geometry/inspection/face_touches.h"
 #include "machines/toml/regular_file.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/controls/registry.h"
@@ -38,21 +41,36 @@ struct ProbeRequest : commands::JobRequest {
 
 struct Inputs {
   job::Job job;
-  std::optional<face_gear::FaceGear> gear;
+  std::optional<face_gear::FaceGear> face_gear;
+  std::optional<bevel_gear::BevelGear> bevel_gear;
+  std::unique_ptr<inspection::TouchedPart> part;
   machines::Machine machine;
   inspection::TouchOptions options;
   inspection::TouchPlan plan;
+  std::optional<Stations> stations;
 };
+
+/// The gear of the job, and what a probe may touch of it.
+std::vector<Diagnostic> make_part(Inputs& in) {
+  if (in.job.bevel_gear()) {
+    auto gear = process::make_bevel_gear(in.job);
+    if (auto* errors = gear.refused()) return std::move(*errors);
+    in.bevel_gear = std::move(gear).value();
+    in.part = std::make_unique<inspection::TouchedBevelGear>(*in.bevel_gear);
+    return {};
+  }
+  auto gear = process::make_face_gear(in.job);
+  if (auto* errors = gear.refused()) return std::move(*errors);
+  in.face_gear = std::move(gear).value();
+  in.part = std::make_unique<inspection::TouchedFaceGear>(*in.face_gear);
+  return {};
+}
 
 std::vector<Diagnostic> read_inputs(const ProbeRequest& request, Inputs& in) {
   auto read = job::read_job_file(request.job_file);
   if (auto* errors = read.refused()) return std::move(*errors);
   in.job = std::move(read).value();
-  if (!in.job.face_gear())
-    return {fail_at(in.job.where("gear"), "probe touches the teeth of face gears; this is a {}", in.job.gear_type())};
-  auto gear = process::make_face_gear(in.job);
-  if (auto* errors = gear.refused()) return std::move(*errors);
-  in.gear = std::move(gear).value();
+  if (auto errors = make_part(in); !errors.empty()) return errors;
   if (!in.job.setup)
     return {fail_at(in.job.where("setup"), "the job lacks a [setup]: where the gear stands is not known")};
   auto machine = process::load_machine(in.job);
@@ -61,10 +79,13 @@ std::vector<Diagnostic> read_inputs(const ProbeRequest& request, Inputs& in) {
   in.options.ball_diameter_mm = request.ball_mm.value_or(0);
   in.options.allowance_mm = request.allowance_mm.value_or(0);
   in.options.spaces = request.spaces.value_or(in.options.spaces);
-  auto plan = request.blank ? inspection::plan_blank_touches(*in.gear, in.options)
-                            : inspection::plan_touches(*in.gear, in.options);
+  auto plan = request.blank ? inspection::plan_blank_touches(*in.part, in.options)
+                            : inspection::plan_touches(*in.part, in.options);
   if (!plan) return {process::located(in.job, "gear", plan.error())};
   in.plan = std::move(*plan);
+  auto stations = Stations::make(in.plan, *in.job.setup, in.machine);
+  if (!stations) return {process::located(in.job, "setup.axis", stations.error())};
+  in.stations.emplace(std::move(*stations));
   return {};
 }
 
@@ -83,13 +104,14 @@ CommandOutcome write_program(const ProbeRequest& request, const Inputs& in, app:
   program.probe_length_mm = request.length_mm.value_or(0);
   program.feed = request.feed.value_or(50);
   program.guarded_feed = kGuardedFeed;
-  if (const auto placed = place_touches(in.plan, setup, in.machine, program); !placed)
+  if (const auto placed = in.stations->place(in.plan, program); !placed)
     return app::failed(process::located(in.job, "setup.origin", placed.error()));
   const auto text = controls::probing_text(program, in.machine.dialect);
   if (!text) return app::failed(process::located(in.job, "machine.file", text.error()));
   CommandOutcome outcome;
   const std::string name = std::string(kProgram) + dialect->extension;
-  const std::string where = request.blank ? fmt::format("top and rim of the blank in {} places", in.options.spaces)
+  const std::string where = request.blank ? fmt::format("{} of the blank in {} places",
+                                                        in.bevel_gear ? "face cone" : "top and rim", in.options.spaces)
                                           : fmt::format("both flanks in {} tooth spaces", in.options.spaces);
   outcome.summary = fmt::format(
       "  probing program     {}: {} touches of {}, ball of {:g} mm\n"
@@ -115,12 +137,13 @@ CommandOutcome solve(const ProbeRequest& request, const Inputs& in, app::OutputD
   auto results = parse_touches(*text, request.results);
   if (!results) return app::failed(results.error());
   const joints::Setup& setup = *in.job.setup;
-  for (auto& r : *results) r.centre = in_gear(setup, r.centre);
-  const auto place = inspection::place_of_gear(*in.gear, in.plan, in.options, *results, request.results);
+  for (auto& r : *results)
+    if (r.number >= 1 && r.number <= int(in.plan.touches.size())) r.centre = in.stations->in_gear(r.number, r.centre);
+  const auto place = inspection::place_of_part(*in.part, in.plan, in.options, *results, request.results);
   if (!place) return app::failed(place.error());
   const job::MeasuredSetup measured{setup.origin_mm + setup.rotation() * place->moved_mm,
                                     setup.clocking_rad + place->clocking_rad};
-  const double rim = in.gear->outer_radius();
+  const double rim = in.part->reach().radius_mm;
   CommandOutcome outcome;
   outcome.summary = fmt::format(
       "  origin              [{:.4f}, {:.4f}, {:.4f}], ({:+.4f}, {:+.4f}, {:+.4f}) mm from the job's, +- ({:.4f}, "
@@ -179,7 +202,7 @@ void add_probe(commands::Commands& commands) {
         set.whole_number("--tool", request.tool, "number of the probe", kTool);
         set.number("--allowance", request.allowance_mm, "that still stands on the flanks (default 0)", kAllowance);
         set.number("--feed", request.feed, "of a touch (default 50)", kFeed);
-        set.flag("--blank", request.blank, "top and rim of the turned blank are touched, not teeth");
+        set.flag("--blank", request.blank, "the turned blank is touched, not teeth: top and rim, or its face cone");
         set.whole_number("--spaces", request.spaces,
                          "tooth spaces, or places of the blank, that are touched (default 4)", kSpaces);
         set.text("--results", request.results,

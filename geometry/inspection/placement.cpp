@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/face_gear/inverse.h"
 #include "geometry/inspection/touches.h"
 
 namespace toothpath::inspection {
@@ -31,9 +30,9 @@ struct Solved {
 
 class Solver {
  public:
-  Solver(const face_gear::FaceGear& gear, const TouchPlan& plan, const TouchOptions& options,
+  Solver(const TouchedPart& part, const TouchPlan& plan, const TouchOptions& options,
          const std::vector<TouchResult>& results)
-      : gear_(gear),
+      : part_(part),
         plan_(plan),
         above_(0.5 * options.ball_diameter_mm + options.allowance_mm),
         results_(results),
@@ -92,17 +91,14 @@ class Solver {
   }
 
  private:
-  /// By which the ball stands off its flank.
+  /// By which the ball stands off its surface.
   [[nodiscard]] std::optional<double> distance(const Touch& touch, const Vec3& q) const {
-    if (touch.what == Touched::top) return q.z() - gear_.blank_top() - above_;
-    if (touch.what == Touched::rim) return radius(q) - gear_.outer_radius() - above_;
-    const auto& f = gear_.rings()[std::size_t(touch.zone)].surface;
-    const auto d = face_gear::flank_distance(f, touch.side, turned(q, -touch.tooth * gear_.pitch()));
-    if (!d) return {};
-    return d->distance - above_;
+    const auto off = part_.distance(touch, q);
+    if (!off) return {};
+    return *off - above_;
   }
 
-  const face_gear::FaceGear& gear_;
+  const TouchedPart& part_;
   const TouchPlan& plan_;
   double above_;
   const std::vector<TouchResult>& results_;
@@ -147,7 +143,7 @@ Diagnostic disagreement(const Solver& solver, const Solved& all, const std::vect
 
 }  // namespace
 
-Result<Placement> place_of_gear(const face_gear::FaceGear& gear, const TouchPlan& plan, const TouchOptions& options,
+Result<Placement> place_of_part(const TouchedPart& part, const TouchPlan& plan, const TouchOptions& options,
                                 const std::vector<TouchResult>& results, const std::string& file) {
   if (auto wrong = check_numbers(plan, results, file)) return *wrong;
   for (const auto& r : results)
@@ -156,17 +152,17 @@ Result<Placement> place_of_gear(const face_gear::FaceGear& gear, const TouchPlan
                      "touch {} lies {:.3f} mm from where the plan has it, at most {:g} mm: another part, frame or "
                      "unit",
                      r.number, off, 2 * kFarthestMoved);
-  const Solver solver(gear, plan, options, results);
+  const Solver solver(part, plan, options, results);
   const auto upright = solver.solve(false, -1), leaning = solver.solve(true, -1);
   if (!upright || !leaning)
     return fail_at({file, 1, 1}, "no place of the gear answers the touches: another part, frame or unit");
   if (leaning->worst > kWorstTouch) return disagreement(solver, *leaning, results, file);
   Placement out;
   out.tilt_rad = leaning->motion.turn.head<2>();
-  if (const double lean = out.tilt_rad.norm() * gear.outer_radius(); lean > kMostLean)
+  if (const double lean = out.tilt_rad.norm() * part.reach().radius_mm; lean > kMostLean)
     return fail_at({file, 1, 1},
                    "the axis of the gear leans: {:.4f} mm at radius {:.3f} mm, at most {:g} mm: true up the part", lean,
-                   gear.outer_radius(), kMostLean);
+                   part.reach().radius_mm, kMostLean);
   out.moved_mm = upright->motion.way;
   out.clocking_rad = upright->motion.turn.z();
   out.residual_mm = upright->worst;

@@ -25,19 +25,23 @@ Result<std::string> touch_probe_probing(const ProbeProgram& program) {
   const std::string top = "L " + word('Z', program.top_mm, true) + " R0 FMAX M91";
   add(top);
   add(fmt::format("TOOL CALL {} Z", program.tool));
-  add(top);
-  std::string rotaries;
-  for (const auto& [letter, degrees] : program.rotaries) rotaries += " " + word(letter, degrees, true);
-  if (!rotaries.empty()) add("L" + rotaries + " R0 FMAX");
-  bool first = true;
-  for (const ProbeTouch& touch : program.touches) {
+  const auto turn = [&](const ProbeTouch& touch) {
+    add(top);
+    std::string rotaries;
+    for (const auto& [letter, degrees] : touch.rotaries) rotaries += " " + word(letter, degrees, true);
+    if (!rotaries.empty()) add("L" + rotaries + " R0 FMAX");
+  };
+  turn(program.touches.front());
+  for (std::size_t k = 0; k < program.touches.size(); ++k) {
+    const ProbeTouch& touch = program.touches[k];
+    const Coming coming = coming_to(program, k);
     const std::string feed = fmt::format(" R0 F{:.0f}", program.guarded_feed);
     const int result = kFirstResult + 4 * (touch.number - 1);
     const Vec3 way = touch.past - touch.start;
     add(fmt::format("; TOUCH {} {}", touch.number, touch.remark));
-    add("L " + words(touch.start, 2, true) + (first ? " R0 FMAX" : feed));
-    if (first) add("L " + word('Z', program.clear_mm, true) + feed);
-    first = false;
+    if (coming == Coming::turned) turn(touch);
+    add("L " + words(touch.start, 2, true) + (coming == Coming::beside ? feed : " R0 FMAX"));
+    if (coming != Coming::beside) add("L " + word('Z', program.clear_mm, true) + feed);
     add("L " + word('Z', touch.start.z(), true) + feed);
     add("TCH PROBE 4.0 MEASURING IN 3-D");
     add(fmt::format("TCH PROBE 4.1 Q{}", result));

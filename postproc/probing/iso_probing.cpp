@@ -15,18 +15,19 @@ class Lines {
   std::string text_;
 };
 
-std::string rotary_words(const ProbeProgram& program) {
-  std::string out;
-  for (const auto& [letter, degrees] : program.rotaries) out += (out.empty() ? "" : " ") + word(letter, degrees);
-  return out;
+/// Z to its top and the rotaries to the pose of a touch.
+void turn(Lines& out, const ProbeProgram& program, const ProbeTouch& touch) {
+  out.add("G53 G0 " + word('Z', program.top_mm));
+  std::string rotaries;
+  for (const auto& [letter, degrees] : touch.rotaries) rotaries += " " + word(letter, degrees);
+  if (!rotaries.empty()) out.add("G0" + rotaries);
 }
 
-/// Up, to the pose of the rotaries, and the probe's length.
+/// Up, the probe, and the pose of the first touch.
 void begin(Lines& out, const ProbeProgram& program) {
   out.add("G53 G0 " + word('Z', program.top_mm));
   out.add(fmt::format("T{} M6", program.tool));
-  out.add("G53 G0 " + word('Z', program.top_mm));
-  if (!program.rotaries.empty()) out.add("G0 " + rotary_words(program));
+  turn(out, program, program.touches.front());
 }
 
 void linuxcnc_subs(Lines& out) {
@@ -54,17 +55,14 @@ std::string linuxcnc_text(const ProbeProgram& program) {
   begin(out, program);
   out.add(fmt::format("G43 H{}", program.tool));
   out.add("(LOGOPEN,probe_results.txt)");
-  bool first = true;
-  for (const ProbeTouch& touch : program.touches) {
+  for (std::size_t k = 0; k < program.touches.size(); ++k) {
+    const ProbeTouch& touch = program.touches[k];
     const Vec3 above(touch.start.x(), touch.start.y(), program.clear_mm);
+    const Coming coming = coming_to(program, k);
     out.comment(fmt::format("TOUCH {} {}", touch.number, touch.remark));
-    if (first) {
-      out.add("G0 " + words(above, 2));
-      out.add(call(above, program.guarded_feed));
-      first = false;
-    } else {
-      out.add(call(above, program.guarded_feed));
-    }
+    if (coming == Coming::turned) turn(out, program, touch);
+    if (coming != Coming::beside) out.add("G0 " + words(above, 2));
+    out.add(call(above, program.guarded_feed));
     out.add(call(touch.start, program.guarded_feed));
     out.add("G38.2 " + words(touch.past, 3) + " " + word('F', program.feed));
     out.add(fmt::format("(LOG,{} #5061 #5062 #5063)", touch.number));
@@ -95,10 +93,17 @@ std::string fanuc_text(const ProbeProgram& program) {
   out.add(fmt::format("G43 H{} {}", program.tool, word('Z', program.clear_mm)));
   out.add("G65 P9832");
   out.add("POPEN");
-  for (const ProbeTouch& touch : program.touches) {
+  for (std::size_t k = 0; k < program.touches.size(); ++k) {
+    const ProbeTouch& touch = program.touches[k];
     const Vec3 above(touch.start.x(), touch.start.y(), program.clear_mm);
     out.comment(fmt::format("TOUCH {} {}", touch.number, touch.remark));
-    out.add(guarded(above, 2, program.guarded_feed));
+    if (coming_to(program, k) == Coming::turned) {
+      turn(out, program, touch);
+      out.add("G0 " + words(above, 2));
+      out.add("G65 P9810 " + word('Z', above.z()) + " " + word('F', program.guarded_feed));
+    } else {
+      out.add(guarded(above, 2, program.guarded_feed));
+    }
     out.add("G65 P9810 " + word('Z', touch.start.z()) + " " + word('F', program.guarded_feed));
     out.add("G31 " + words(touch.past, 3) + " " + word('F', program.feed));
     out.add(fmt::format("#100={}", touch.number));

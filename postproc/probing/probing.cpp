@@ -18,6 +18,11 @@ std::string words(const Vec3& place, int count, bool sign) {
   return out;
 }
 
+Coming coming_to(const ProbeProgram& program, std::size_t touch) {
+  if (touch == 0) return Coming::first;
+  return program.touches[touch].rotaries == program.touches[touch - 1].rotaries ? Coming::beside : Coming::turned;
+}
+
 std::vector<std::string> header(const ProbeProgram& program) {
   return {numbers::comment_text("PROBE JOB " + program.job_name),
           numbers::comment_text("MACHINE " + program.machine_name),

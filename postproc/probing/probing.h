@@ -11,12 +11,13 @@
 
 namespace toothpath::probing {
 
-/// One touch; places of the ball's centre in the work offset, mm, all rotaries standing.
+/// One touch; places of the ball's centre in the work offset, mm, while the rotaries stand.
 struct ProbeTouch {
   int number = 0;
   std::string remark;         ///< ASCII, upper case
   Vec3 start = Vec3::Zero();  ///< straight below the clear height; the ball goes from here
   Vec3 past = Vec3::Zero();   ///< to the touch, or to here where nothing is met: then the program stops
+  std::vector<std::pair<char, double>> rotaries;  ///< letter and degrees; they turn with the probe at its top
 };
 
 struct ProbeProgram {
@@ -30,7 +31,6 @@ struct ProbeProgram {
   double guarded_feed = 0;                           ///< of the ways between, mm/min
   double top_mm = 0;                                 ///< machine Z at which the probe comes and goes
   double clear_mm = 0;                               ///< Z of the ball's centre above everything, work offset
-  std::vector<std::pair<char, double>> rotaries;     ///< letter and degrees
   std::vector<ProbeTouch> touches;
 };
 

@@ -28,27 +28,34 @@ Result<std::string> meas_probing(const ProbeProgram& program) {
   add(top);
   add(fmt::format("T=\"T{}\"", program.tool));
   add("M6");
-  add(top);
-  std::string rotaries;
-  for (const auto& [letter, degrees] : program.rotaries)
-    rotaries += fmt::format(" {}={}", letter, word(letter, degrees).substr(1));
-  if (!rotaries.empty()) add("G0" + rotaries);
-  add("D1");
+  const auto turn = [&](const ProbeTouch& touch) {
+    add(top);
+    std::string rotaries;
+    for (const auto& [letter, degrees] : touch.rotaries)
+      rotaries += fmt::format(" {}={}", letter, word(letter, degrees).substr(1));
+    if (!rotaries.empty()) add("G0" + rotaries);
+    add("D1");
+  };
+  turn(program.touches.front());
   add("DELETE(FAULT,\"PROBE_RESULTS\")");
   const auto guarded = [&](const std::string& where) {
     add("MEAS=1 G1 " + where + fmt::format(" F{}", word('F', program.guarded_feed).substr(1)));
     add("STOPRE");
     add("IF $AC_MEA[1]==1 GOTOF ON_THE_WAY");
   };
-  bool first = true;
-  for (const ProbeTouch& touch : program.touches) {
+  for (std::size_t k = 0; k < program.touches.size(); ++k) {
+    const ProbeTouch& touch = program.touches[k];
     const Vec3 above(touch.start.x(), touch.start.y(), program.clear_mm);
+    const Coming coming = coming_to(program, k);
     add(fmt::format("; TOUCH {} {}", touch.number, touch.remark));
-    if (first) add("G0 " + assigned(above, 0, 2));
-    else guarded(assigned(above, 0, 2));
-    guarded(assigned(first ? above : touch.start, 2, 3));
-    if (first) guarded(assigned(touch.start, 2, 3));
-    first = false;
+    if (coming == Coming::turned) turn(touch);
+    if (coming == Coming::beside) {
+      guarded(assigned(above, 0, 2));
+    } else {
+      add("G0 " + assigned(above, 0, 2));
+      guarded(assigned(above, 2, 3));
+    }
+    guarded(assigned(touch.start, 2, 3));
     add("MEAS=1 G1 " + assigned(touch.past, 0, 3) + fmt::format(" F{}", word('F', program.feed).substr(1)));
     add("STOPRE");
     add("IF $AC_MEA[1]==0 GOTOF NOTHING_MET");
@@ -61,12 +68,9 @@ Result<std::string> meas_probing(const ProbeProgram& program) {
   }
   add(top);
   add("M30");
-  add("ON_THE_WAY:");
-  add("SETAL(65001,\"THE PROBE MET SOMETHING ON ITS WAY\")");
-  add("M30");
-  add("NOTHING_MET:");
-  add("SETAL(65002,\"THE PROBE MET NOTHING\")");
-  add("M30");
+  for (const char* line : {"ON_THE_WAY:", "SETAL(65001,\"THE PROBE MET SOMETHING ON ITS WAY\")", "M30",
+                           "NOTHING_MET:", "SETAL(65002,\"THE PROBE MET NOTHING\")", "M30"})
+    add(line);
   return out;
 }
 

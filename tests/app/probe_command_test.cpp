@@ -11,30 +11,39 @@
 #include "geometry/face_gear/inverse.h"
 #include "tests/app/program.h"
 #include "tests/support/touching_ball.h"
+#include "tests/support/trunnion_kinematics.h"
 
 namespace toothpath::test {
 namespace {
 
 struct ProbedTouch {
-  int number = 0, tooth = 0, side = 1;
+  int number = 0, zone = 0, tooth = 0, side = 1;  ///< of a bevel gear: half and space
   Vec3 start = Vec3::Zero(), past = Vec3::Zero();
+  double A = 0, C = 0;
 };
 
 /// Touches as they stand in the text of LinuxCNC.
 std::vector<ProbedTouch> touches_of(const std::string& text) {
+  static const std::regex touch(
+      R"(\(TOUCH (\d+) (?:ZONE|HALF) (\d) (?:TOOTH|SPACE) (\d+) (?:FLANK|WALL) (\+1|-1|L|U)\))"),
+      pose(R"(G0 C(\S+) A(\S+))"), way(R"(o7001 call \[(\S+)\] \[(\S+)\] \[(\S+)\] \[\S+\])"),
+      probed(R"(G38\.2 X(\S+) Y(\S+) Z(\S+) F\S+)");
   std::vector<ProbedTouch> out;
   std::istringstream in(text);
   std::smatch m;
+  double A = 0, C = 0;
   for (std::string line; std::getline(in, line);) {
-    if (std::regex_match(line, m, std::regex(R"(\(TOUCH (\d+) ZONE 0 TOOTH (\d+) FLANK ([+-]1)\))"))) {
-      out.emplace_back();
-      out.back().number = std::stoi(m[1]);
-      out.back().tooth = std::stoi(m[2]);
-      out.back().side = std::stoi(m[3]);
-    } else if (std::regex_match(line, m, std::regex(R"(o7001 call \[(\S+)\] \[(\S+)\] \[(\S+)\] \[\S+\])"))) {
+    if (std::regex_match(line, m, touch)) {
+      out.push_back({std::stoi(m[1]), std::stoi(m[2]), std::stoi(m[3]), m[4] == "+1" || m[4] == "L" ? 1 : -1});
+    } else if (std::regex_match(line, m, pose)) {
+      C = std::stod(m[1]);
+      A = std::stod(m[2]);
+    } else if (std::regex_match(line, m, way)) {
       out.back().start = {std::stod(m[1]), std::stod(m[2]), std::stod(m[3])};
-    } else if (std::regex_match(line, m, std::regex(R"(G38\.2 X(\S+) Y(\S+) Z(\S+) F\S+)"))) {
+    } else if (std::regex_match(line, m, probed)) {
       out.back().past = {std::stod(m[1]), std::stod(m[2]), std::stod(m[3])};
+      out.back().A = A;
+      out.back().C = C;
     }
   }
   return out;
@@ -103,6 +112,73 @@ TEST(ProbeCommand, AGearThatStandsElsewhereIsCutWhereItStands) {
   EXPECT_EQ(run_program({"check", dir / "job.toml", dir / "hard/program.ngc", "--out", dir / "nominal"}).exit_code, 1);
 }
 
+/// The kinematics of the sample's trunnion.
+constexpr TrunnionGeometry kTrunnion{3, -2, 0, 14.5, -31.25};
+
+TEST(ProbeCommand, ABevelGearIsFoundInTheTiltOfItsMill) {
+  const TestDir dir;
+  const std::string job_text = file_text(kSamples + "/bevel_wheel.toml");
+  write_file(dir / "job.toml", job_text);
+  const auto probe = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {
+        "probe", dir / "job.toml", "--ball-diameter", "1.5", "--probe-length", "120", "--tool",
+        "9",     "--out",          dir / "probe"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program({words});
+  };
+  const auto written = probe({});
+  ASSERT_EQ(written.exit_code, 0) << written.err;
+  const auto touches = touches_of(file_text(dir / "probe/probe_setup.ngc"));
+  ASSERT_EQ(touches.size(), 16u);
+
+  auto job = job::read_job_file(dir / "job.toml");
+  ASSERT_TRUE(job.has_value());
+  const auto gear = process::make_bevel_gear(job.value()).value();
+  const joints::Setup setup = *job.value().setup;
+  const Vec3 moved(0.11, -0.07, 0.09);
+  const double turn = -0.0009;
+  const Stands stands{Mat3(Eigen::AngleAxisd(turn, Vec3::UnitZ())), moved};
+  const Vec3 flip(1, -1, -1);  // axis = "down"
+  std::string results;
+  for (const auto& t : touches) {
+    const auto table = [&](const Vec3& w) -> Vec3 {
+      const Vec3 at = w + setup.work_offset_at_mm;
+      const Vec3 tip = trunnion_forward(kTrunnion, at.x(), at.y(), at.z() + 120, t.A, t.C, 120).tip;
+      return flip.cwiseProduct(tip - setup.origin_mm);
+    };
+    // The stem stands along the mill at this place of the wall.
+    const Vec3 from = table(t.start), to = table(t.past), middle = 0.5 * (from + to);
+    const Vec3 stem = flip.cwiseProduct(trunnion_forward(kTrunnion, 0, 0, 0, t.A, t.C, 120).axis);
+    EXPECT_LT((stem - gear.axis(std::atan2(middle.y(), middle.x()))).norm(), 0.06) << t.number;
+    const auto centre = touching_centre(gear, t.zone, t.side, t.tooth, 0.75, stands, from, to);
+    ASSERT_TRUE(centre) << t.number;
+    // The same share of the way in the words: the rotaries stand.
+    const double share = (*centre - from).norm() / (to - from).norm();
+    const Vec3 w = t.start + share * (t.past - t.start);
+    results += fmt::format("{} {:.6f} {:.6f} {:.6f}\n", t.number, w.x(), w.y(), w.z());
+  }
+  write_file(dir / "results.txt", results);
+  const auto solved = probe({"--results", dir / "results.txt", "--json"});
+  ASSERT_EQ(solved.exit_code, 0) << solved.err;
+  const auto found = nlohmann::json::parse(solved.out)["report"];
+  const Vec3 in_machine = flip.cwiseProduct(moved);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(found["moved"][k].get<double>(), moved[Eigen::Index(k)], 1e-5) << solved.out;
+    EXPECT_NEAR(found["origin"][k].get<double>(), setup.origin_mm[Eigen::Index(k)] + in_machine[Eigen::Index(k)], 1e-5);
+  }
+  EXPECT_NEAR(found["clocking_deg"].get<double>(), degrees(turn), 1e-5);
+  EXPECT_LT(found["residual_um"].get<double>(), 0.2);
+
+  write_file(dir / "part.measured.toml", file_text(dir / "probe/part.measured.toml"));
+  write_file(dir / "hard.toml", replaced(job_text, "[setup]\n", "[setup]\nmeasured = \"part.measured.toml\"\n"));
+  const auto run = run_program({"run", dir / "hard.toml", "--out", dir / "hard"});
+  ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+  EXPECT_EQ(run_program({"check", dir / "hard.toml", dir / "hard/program.ngc", "--out", dir / "again"}).exit_code, 0);
+  const auto blank = probe({"--blank"});
+  ASSERT_EQ(blank.exit_code, 0) << blank.err;
+  EXPECT_NE(file_text(dir / "probe/probe_setup.ngc").find("(TOUCH 8 FACE CONE OF THE BLANK)"), std::string::npos);
+}
+
 TEST(ProbeCommand, WhatIsWrongIsRefusedAtItsPlace) {
   const TestDir dir;
   const std::string job_text = file_text(kSamples + "/spur_quick.toml");
@@ -119,7 +195,7 @@ TEST(ProbeCommand, WhatIsWrongIsRefusedAtItsPlace) {
   EXPECT_NE(large.err.find("the largest that does is"), std::string::npos) << large.err;
   const auto far = run({"--ball-diameter", "1", "--probe-length", "900", "--tool", "9"});
   EXPECT_EQ(far.exit_code, 3);
-  EXPECT_NE(far.err.find("of the gauge point exceeds"), std::string::npos) << far.err;
+  EXPECT_NE(far.err.find("the gauge point would stand beyond the travels, Z = "), std::string::npos) << far.err;
   write_file(dir / "r.txt", "1 2 3\n");
   const auto short_line = run({"--ball-diameter", "1", "--results", dir / "r.txt"});
   EXPECT_EQ(short_line.exit_code, 3);

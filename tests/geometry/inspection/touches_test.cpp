@@ -5,7 +5,7 @@
 
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/inverse.h"
-#include "geometry/inspection/touches.h"
+#include "geometry/inspection/face_touches.h"
 #include "tests/support/inspection_points.h"
 #include "tests/support/random.h"
 #include "tests/support/sample_gears.h"
@@ -14,9 +14,13 @@
 namespace toothpath {
 namespace {
 
+using inspection::TouchedFaceGear;
 using inspection::TouchOptions;
 using inspection::TouchPlan;
 using inspection::TouchResult;
+
+/// Flank +1 is that of the tooth before the space.
+int tooth_of(const inspection::Touch& touch) { return touch.side > 0 ? touch.space : touch.space + 1; }
 
 struct Trial {
   const char* name;
@@ -38,11 +42,11 @@ std::vector<TouchResult> read_of(const face_gear::FaceGear& gear, const TouchPla
   std::vector<TouchResult> out;
   for (const auto& touch : plan.touches) {
     const auto& f = gear.rings()[std::size_t(touch.zone)].surface;
-    const Vec3 nominal = turned(touch.centre, -touch.tooth * gear.pitch());
+    const Vec3 nominal = turned(touch.centre, -tooth_of(touch) * gear.pitch());
     const auto foot = face_gear::flank_distance(f, touch.side, nominal);
     const auto at =
-        test::touching_centre(f, touch.side, touch.tooth, 0.5 * options.ball_diameter_mm + options.allowance_mm, stands,
-                              touch.start(), touch.centre - 1.5 * touch.normal, foot->foot.theta, foot->foot.B);
+        test::touching_centre(f, touch.side, tooth_of(touch), 0.5 * options.ball_diameter_mm + options.allowance_mm,
+                              stands, touch.start(), touch.centre - 1.5 * touch.normal, foot->foot.theta, foot->foot.B);
     EXPECT_TRUE(at) << touch.number;
     if (at) out.push_back({touch.number, *at + random(-1, 1) * noise * touch.normal, {"r.txt", touch.number + 1, 1}});
   }
@@ -52,7 +56,7 @@ std::vector<TouchResult> read_of(const face_gear::FaceGear& gear, const TouchPla
 TEST(Touches, TheBallAndItsStemMeetNothingButTheirFlank) {
   for (const auto& [name, parameters, options] : trials()) {
     const auto gear = test::made(parameters);
-    const auto plan = inspection::plan_touches(gear, options);
+    const auto plan = inspection::plan_touches(TouchedFaceGear(gear), options);
     ASSERT_TRUE(plan) << name << plan.error().message;
     EXPECT_EQ(plan->touches.size(), std::size_t(options.spaces) * 4) << name;
     EXPECT_GE(plan->gap_mm, options.least_gap_mm);
@@ -64,7 +68,7 @@ TEST(Touches, TheBallAndItsStemMeetNothingButTheirFlank) {
       std::vector<Vec3> near, own;
       for (int k = -2; k <= 2; ++k)
         for (const auto& p : cloud) {
-          const Vec3 q = turned(p.p + options.allowance_mm * p.n, (touch.tooth + k) * gear.pitch());
+          const Vec3 q = turned(p.p + options.allowance_mm * p.n, (tooth_of(touch) + k) * gear.pitch());
           if ((q - touch.centre).norm() > 3 * parameters.module_mm) continue;
           (k == 0 && p.side == touch.side && p.zone == touch.zone ? own : near).push_back(q);
         }
@@ -80,7 +84,7 @@ TEST(Touches, TheBallAndItsStemMeetNothingButTheirFlank) {
         const Vec3 centre = touch.centre + 0.1 * k * touch.approach_mm * touch.normal;
         least = std::min(least, gap(near, centre));
         EXPECT_GT(gap(own, centre), -1e-3) << name;
-        const Vec3 down = touch.start() + Vec3(0, 0, 0.1 * k * (plan->clear_z_mm - touch.start().z()));
+        const Vec3 down = touch.start() + Vec3(0, 0, 0.1 * k * (plan->reach.high_mm + 5 - touch.start().z()));
         least = std::min(least, std::min(gap(near, down), gap(own, down)));
       }
       touched = std::max(touched, gap(own, touch.centre));
@@ -95,15 +99,15 @@ TEST(Touches, AGearThatStandsAnywhereIsFound) {
   test::Random random(17);
   for (const auto& [name, parameters, options] : trials()) {
     const auto gear = test::made(parameters);
-    const auto plan = inspection::plan_touches(gear, options);
+    const auto plan = inspection::plan_touches(TouchedFaceGear(gear), options);
     ASSERT_TRUE(plan);
     double worst = 0, worst_turn = 0;
     for (int trial = 0; trial < 20; ++trial) {
       const Vec3 moved = random.vector(0.15);
       const double turn = random(-0.1, 0.1) / gear.outer_radius();
       const test::Stands stands{Mat3(Eigen::AngleAxisd(turn, Vec3::UnitZ())), moved};
-      const auto place =
-          inspection::place_of_gear(gear, *plan, options, read_of(gear, *plan, options, stands), "r.txt");
+      const auto place = inspection::place_of_part(TouchedFaceGear(gear), *plan, options,
+                                                   read_of(gear, *plan, options, stands), "r.txt");
       ASSERT_TRUE(place) << name << place.error().text();
       worst = std::max(worst, (place->moved_mm - moved).norm());
       worst_turn = std::max(worst_turn, std::abs(place->clocking_rad - turn) * gear.outer_radius());
@@ -119,7 +123,7 @@ TEST(Touches, AGearThatStandsAnywhereIsFound) {
 TEST(Touches, ABlankIsFoundByItsTopAndRim) {
   const auto gear = test::made(test::small_spur());
   const TouchOptions options{3.0, 0, 1, 0.05, 4};
-  const auto plan = inspection::plan_blank_touches(gear, options);
+  const auto plan = inspection::plan_blank_touches(TouchedFaceGear(gear), options);
   ASSERT_TRUE(plan) << plan.error().message;
   ASSERT_EQ(plan->touches.size(), 8u);
   test::Random random(23);
@@ -139,13 +143,13 @@ TEST(Touches, ABlankIsFoundByItsTopAndRim) {
       EXPECT_LT((centre - t.centre).norm(), 0.9);
       results.push_back({t.number, centre, {"r.txt", t.number, 1}});
     }
-    const auto place = inspection::place_of_gear(gear, *plan, options, results, "r.txt");
+    const auto place = inspection::place_of_part(TouchedFaceGear(gear), *plan, options, results, "r.txt");
     ASSERT_TRUE(place) << place.error().text();
     EXPECT_LT((place->moved_mm - moved).norm(), 1e-9);
     EXPECT_EQ(place->clocking_rad, 0);
     auto bad = results;
     bad[3].centre += 0.3 * plan->touches[3].normal;
-    const auto refused = inspection::place_of_gear(gear, *plan, options, bad, "r.txt");
+    const auto refused = inspection::place_of_part(TouchedFaceGear(gear), *plan, options, bad, "r.txt");
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().message.find("not agree"), std::string::npos);
   }
@@ -154,7 +158,8 @@ TEST(Touches, ABlankIsFoundByItsTopAndRim) {
     const Vec3 start = t.start();
     EXPECT_TRUE(radius(start) > gear.outer_radius() + 1.5 || start.z() > gear.blank_top() + 1.5);
   }
-  const auto cone = inspection::plan_blank_touches(test::made(test::conical_gear()), options);
+  const auto conical = test::made(test::conical_gear());
+  const auto cone = inspection::plan_blank_touches(TouchedFaceGear(conical), options);
   ASSERT_FALSE(cone);
   EXPECT_EQ(cone.error().message, "shaft_angle = 75 deg: the blank has no flat top to touch, 90 deg has");
 }
@@ -162,12 +167,12 @@ TEST(Touches, ABlankIsFoundByItsTopAndRim) {
 TEST(Touches, ScatterIsToldAndTheStatedDeviationsHold) {
   const auto gear = test::made(test::small_spur());
   TouchOptions options{1.0, 0, 1, 0.05, 12};
-  const auto plan = inspection::plan_touches(gear, options);
+  const auto plan = inspection::plan_touches(TouchedFaceGear(gear), options);
   ASSERT_TRUE(plan);
   const Vec3 moved(0.05, -0.08, 0.03);
   const test::Stands stands{Mat3(Eigen::AngleAxisd(1e-3, Vec3::UnitZ())), moved};
-  const auto place =
-      inspection::place_of_gear(gear, *plan, options, read_of(gear, *plan, options, stands, 0.003), "r.txt");
+  const auto place = inspection::place_of_part(TouchedFaceGear(gear), *plan, options,
+                                               read_of(gear, *plan, options, stands, 0.003), "r.txt");
   ASSERT_TRUE(place) << place.error().text();
   EXPECT_GT(place->residual_mm, 0.001);
   EXPECT_LT(place->residual_mm, 0.006);
@@ -181,12 +186,12 @@ TEST(Touches, ScatterIsToldAndTheStatedDeviationsHold) {
 TEST(Touches, WhatIsWrongIsNamed) {
   const auto gear = test::made(test::small_spur());
   const TouchOptions options{1.0, 0, 1, 0.05, 4};
-  const auto plan = inspection::plan_touches(gear, options);
+  const auto plan = inspection::plan_touches(TouchedFaceGear(gear), options);
   ASSERT_TRUE(plan);
   const test::Stands stands{Mat3::Identity(), {0.1, 0, 0}};
   const auto good = read_of(gear, *plan, options, stands);
   const auto error_of = [&](const std::vector<TouchResult>& results) {
-    const auto place = inspection::place_of_gear(gear, *plan, options, results, "r.txt");
+    const auto place = inspection::place_of_part(TouchedFaceGear(gear), *plan, options, results, "r.txt");
     return place ? std::string("taken") : place.error().text();
   };
   EXPECT_EQ(error_of(good), "taken");
@@ -213,10 +218,10 @@ TEST(Touches, WhatIsWrongIsNamed) {
   EXPECT_NE(error_of(read_of(gear, *plan, options, leaning)).find("the axis of the gear leans: 0.0500 mm at radius"),
             std::string::npos)
       << error_of(read_of(gear, *plan, options, leaning));
-  const auto large = inspection::plan_touches(gear, {4.0, 0, 1, 0.05, 4});
+  const auto large = inspection::plan_touches(TouchedFaceGear(gear), {4.0, 0, 1, 0.05, 4});
   ASSERT_FALSE(large);
   EXPECT_NE(large.error().message.find("the largest that does is"), std::string::npos) << large.error().message;
-  EXPECT_FALSE(inspection::plan_touches(gear, {1.0, 0, 1, 0.05, 2}));
+  EXPECT_FALSE(inspection::plan_touches(TouchedFaceGear(gear), {1.0, 0, 1, 0.05, 2}));
 }
 
 }  // namespace

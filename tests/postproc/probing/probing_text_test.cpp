@@ -28,10 +28,12 @@ ProbeProgram sample() {
   p.guarded_feed = 1000;
   p.top_mm = 399.9;
   p.clear_mm = 12.5;
-  p.rotaries = {{'A', 0}, {'C', 0}};
-  p.touches = {{1, "ZONE 0 TOOTH 0 FLANK +1", {62, -1.25, -2.5}, {61.8, -3.1234, -3.25}},
-               {2, "ZONE 0 TOOTH 1 FLANK -1", {62, 1, -2.5}, {62.25, 2.875, -3.5}},
-               {3, "ZONE 0 TOOTH 15 FLANK +1", {-0.00001, 62, -2.5}, {-1.5, 62.5, -3}}};
+  const std::vector<std::pair<char, double>> zero = {{'A', 0}, {'C', 0}}, tilted = {{'A', -47.5}, {'C', 30.25}};
+  p.touches = {{1, "ZONE 0 TOOTH 0 FLANK +1", {62, -1.25, -2.5}, {61.8, -3.1234, -3.25}, zero},
+               {2, "ZONE 0 TOOTH 1 FLANK -1", {62, 1, -2.5}, {62.25, 2.875, -3.5}, zero},
+               {3, "ZONE 0 TOOTH 15 FLANK +1", {-0.00001, 62, -2.5}, {-1.5, 62.5, -3}, zero},
+               {4, "HALF 0 SPACE 2 WALL L", {12, -33.5, -2.5}, {13.5, -33, -3}, tilted},
+               {5, "HALF 0 SPACE 2 WALL U", {12, -30.5, -2.5}, {10.5, -31, -3}, tilted}};
   return p;
 }
 
@@ -44,7 +46,9 @@ struct Step {
 
 struct Walk {
   std::vector<Step> steps;
-  std::vector<int> logged;  ///< numbers, in order
+  std::vector<std::pair<double, double>> poses;  ///< A and C, in the order in which they are gone to
+  bool top_before_each = true;                   ///< .. and the probe was at its top
+  std::vector<int> logged;                       ///< numbers, in order
 };
 
 std::optional<double> value_of(const std::string& line, const std::string& letter) {
@@ -65,7 +69,16 @@ Walk walk_of(const std::string& text) {
   double feed = 0;
   std::istringstream in(text);
   std::smatch m;
+  bool at_top = false;
   for (std::string line; std::getline(in, line);) {
+    const bool to_top = (line.find("G53") != std::string::npos || line.find("SUPA") != std::string::npos ||
+                         line.find("M91") != std::string::npos) &&
+                        line.find("399.9") != std::string::npos;
+    if (const auto a = value_of(line, "A"), c = value_of(line, "C"); a && c && line[0] != '(') {
+      out.poses.emplace_back(*a, *c);
+      out.top_before_each = out.top_before_each && at_top;
+    }
+    at_top = to_top;
     if (line.find("G53") != std::string::npos || line.find("SUPA") != std::string::npos ||
         line.find("M91") != std::string::npos || (line[0] == '(' && line.rfind("(LOG,", 0) != 0) || line[0] == ';')
       continue;
@@ -116,7 +129,9 @@ TEST(ProbingText, EveryControlGoesDownTouchesGoesBackAndUp) {
       for (const char c : line) EXPECT_TRUE(c >= ' ' && c <= '~') << line;
     }
     const Walk walk = walk_of(*text);
-    EXPECT_EQ(walk.logged, (std::vector<int>{1, 2, 3})) << dialect << "\n" << *text;
+    EXPECT_EQ(walk.logged, (std::vector<int>{1, 2, 3, 4, 5})) << dialect << "\n" << *text;
+    EXPECT_EQ(walk.poses, (std::vector<std::pair<double, double>>{{0, 0}, {-47.5, 30.25}})) << dialect;
+    EXPECT_TRUE(walk.top_before_each) << dialect << "\n" << *text;
     std::size_t next = 0;
     double height = INFINITY;
     Vec3 at(NAN, NAN, NAN);
@@ -167,13 +182,13 @@ TEST(ProbingTextLinuxcnc, TheInterpreterProbesThePlannedPlaces) {
   for (const auto& line : seen.lines)
     if (line.find("STRAIGHT_PROBE") != std::string::npos) probes.push_back(line);
   // Two ways and one touch for each.
-  ASSERT_EQ(probes.size(), 9u) << seen.exit << seen.messages;
+  ASSERT_EQ(probes.size(), 15u) << seen.exit << seen.messages;
   EXPECT_NE(probes[2].find("61.8000, -3.1234, -3.2500"), std::string::npos) << probes[2];
   EXPECT_NE(probes[8].find("-1.5000, 62.5000, -3.0000"), std::string::npos) << probes[8];
   std::vector<std::string> logged;
   for (const auto& line : seen.lines)
     if (line.find("LOG(\"") != std::string::npos) logged.push_back(line.substr(line.find("LOG(\"")));
-  ASSERT_EQ(logged.size(), 3u);
+  ASSERT_EQ(logged.size(), 5u);
   EXPECT_EQ(logged[0], "LOG(\"1 61.800000 -3.123400 -3.250000\")");
   EXPECT_NE(probes[0].find("62.0000, -1.2500, 12.5000"), std::string::npos) << probes[0];
   EXPECT_EQ(seen.messages.find("rror"), std::string::npos) << seen.messages;
