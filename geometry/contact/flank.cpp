@@ -26,21 +26,51 @@ modification::Rectangle rectangle_of(const Pinion<double>& pinion, const face_ge
   return {2 * (pinion.r_a - pinion.r_p), section(ring.zone.inner_radius_mm), section(ring.zone.outer_radius_mm)};
 }
 
-double set_back(const Pinion<double>& pinion, const modification::Field& field, int side,
-                const Pinion<double>::Place& place) {
-  // The normal of the parallel flank through the place, in the pinion's own directions (d, b, a).
+ContactMember make_member(const face_gear::FaceGear& gear, ContactFlank flank, int pinion_teeth,
+                          const Misalignment& moved, const std::vector<modification::Modification>& on_pinion) {
+  const auto& ring = gear.rings().at(static_cast<std::size_t>(flank.zone));
+  const auto pinion = make_pinion(ring.surface, pinion_teeth, moved);
+  modification::Field field(on_pinion, flank.side, flank.zone, rectangle_of(pinion, ring));
+  auto kept = field.empty() ? nullptr : std::make_shared<const modification::Field>(std::move(field));
+  return {std::move(flank), pinion, std::move(kept)};
+}
+
+namespace {
+
+/// The normal of the parallel flank through a place, in the pinion's own directions (d, b, a); out of the gear.
+struct OwnNormal {
+  double x, y, Z;
+};
+OwnNormal normal_through(const Pinion<double>& pinion, int side, const Pinion<double>::Place& place) {
   const double theta = std::sqrt((place.radius - pinion.r_b) * (place.radius + pinion.r_b)) / pinion.r_b,
                B = std::atan2(place.y, place.x) + side * std::atan(theta);
-  const double n_x = -side * pinion.cos_bb * std::sin(B), n_y = side * pinion.cos_bb * std::cos(B),
-               n_Z = -side * pinion.sin_bb;
+  return {-side * pinion.cos_bb * std::sin(B), side * pinion.cos_bb * std::cos(B), -side * pinion.sin_bb};
+}
+
+}  // namespace
+
+double set_back(const Pinion<double>& pinion, const modification::Field& field, int side,
+                const Pinion<double>::Place& place) {
+  const OwnNormal n = normal_through(pinion, side, place);
   double back = 0;
   for (int k = 0; k < 30; ++k) {  // the foot on the plain flank; amounts change by hundredths along it
     const double next =
-        field.removal(pinion.r_a - std::hypot(place.x - back * n_x, place.y - back * n_y), place.Z - back * n_Z);
+        field.removal(pinion.r_a - std::hypot(place.x - back * n.x, place.y - back * n.y), place.Z - back * n.Z);
     if (std::abs(next - back) < 1e-14) return next;
     back = next;
   }
   return back;
+}
+
+std::optional<ToPinion> to_pinion(const Pinion<double>& pinion, const modification::Field* field, int side,
+                                  const Pinion<double>::Place& place, double phi) {
+  if (!(place.radius >= pinion.r_b)) return std::nullopt;
+  const double plain = pinion.gap(side, place, phi);
+  const OwnNormal n = normal_through(pinion, side, place);
+  ToPinion found{plain, std::hypot(place.x + plain * n.x, place.y + plain * n.y), place.Z + plain * n.Z};
+  if (!(found.radius_mm >= pinion.r_b) || !(found.radius_mm <= pinion.r_a)) return std::nullopt;
+  if (field != nullptr) found.distance_mm += field->removal(pinion.r_a - found.radius_mm, found.Z_mm);
+  return found;
 }
 
 namespace {

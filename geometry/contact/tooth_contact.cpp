@@ -166,7 +166,42 @@ bool position_of(Roll& roll, int k, RollPosition& position) {
   return true;
 }
 
-void summarise(RollResult& result) {
+/// One pair alone at a lattice position, stopped by the member that does it first; nothing where none is in reach.
+std::optional<RollPosition> pair_at(const Roll& roll, int k) {
+  if (k < roll.lattice.first || k > roll.lattice.last) return std::nullopt;
+  RollPosition position;
+  double best = kNever;
+  for (std::size_t m = 0; m < roll.rolls.size(); ++m) {
+    const auto& place = roll.rolls[m].touches[roll.at(k)];
+    if (!place || roll.side * place->phi_1 <= best) continue;
+    best = roll.side * place->phi_1;
+    position.member = static_cast<int>(m);
+    position.radius_mm = std::hypot(place->point.x(), place->point.y());
+    position.height_mm = place->point.z();
+  }
+  if (best == kNever) return std::nullopt;
+  position.phi_1 = roll.side * best;
+  position.phi_2 = roll.lattice.phi_2(k);
+  position.error_rad = position.phi_2 - position.phi_1 * roll.ratio;
+  return position;
+}
+
+/// Errors at which one pair takes over from another, between the positions.
+std::vector<double> handovers(const Roll& roll, const RollResult& result) {
+  std::vector<double> errors;
+  for (int n = 0; n < roll.steps; ++n) {
+    const auto bearing = [&](int k) { return k + result.cycle[static_cast<std::size_t>(k)].tooth * roll.steps; };
+    const int a = bearing(n), b = bearing((n + 1) % roll.steps);
+    if (a + 1 == b) continue;
+    const auto a_0 = pair_at(roll, a), a_1 = pair_at(roll, a + 1), b_0 = pair_at(roll, b - 1), b_1 = pair_at(roll, b);
+    if (!a_0 || !a_1 || !b_0 || !b_1) continue;
+    if (const auto error = handover(a_0->error_rad, a_1->error_rad, b_0->error_rad, b_1->error_rad))
+      errors.push_back(*error);
+  }
+  return errors;
+}
+
+void summarise(RollResult& result, const std::vector<double>& between) {
   double low = 1e300, high = -1e300, sum = 0, touching = 0, marking = 0;
   result.least_touching = result.least_marking = 1 << 20;
   for (const auto& p : result.cycle) {
@@ -179,6 +214,10 @@ void summarise(RollResult& result) {
     result.most_touching = std::max(result.most_touching, p.touching);
     result.least_marking = std::min(result.least_marking, p.marking);
     result.most_marking = std::max(result.most_marking, p.marking);
+  }
+  for (const double error : between) {
+    low = std::min(low, error);
+    high = std::max(high, error);
   }
   const auto n = static_cast<double>(result.cycle.size());
   result.error_range_rad = high - low;
@@ -248,7 +287,9 @@ Result<RollResult> roll(const std::vector<ContactMember>& members, const RollOpt
       return fail("flank {:+}: the pinion of {} teeth does not reach the gear", work.side, pinion.teeth);
     result.cycle.push_back(position);
   }
-  summarise(result);
+  for (int k = work.lattice.first; k <= work.lattice.last; ++k)
+    if (const auto position = pair_at(work, k)) result.pair.push_back(*position);
+  summarise(result, handovers(work, result));
   for (std::size_t m = 0; m < members.size(); ++m) result.patterns.push_back(pattern_of(work, m));
   return result;
 }

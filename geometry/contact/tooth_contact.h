@@ -61,10 +61,26 @@ struct ContactMember {
 /// addendum; along its axis between the sections whose pitch line meets the ends of the ring.
 [[nodiscard]] modification::Rectangle rectangle_of(const Pinion<double>& pinion, const face_gear::FaceGearRing& ring);
 
+/// A flank with its pinion where that stands, and those of its modifications that meet the flank.
+/// Precondition: they are not `modification::refused` on its rectangle.
+[[nodiscard]] ContactMember make_member(const face_gear::FaceGear& gear, ContactFlank flank, int pinion_teeth,
+                                        const Misalignment& moved,
+                                        const std::vector<modification::Modification>& on_pinion);
+
 /// How far modifications set the pinion's flank back along the normal that goes through a place beside it, mm.
 /// @param side  of the gear that the flank runs on
 [[nodiscard]] double set_back(const Pinion<double>& pinion, const modification::Field& field, int side,
                               const Pinion<double>::Place& place);
+
+/// From a place to the pinion's flank along the normal of its helicoid that goes through the place, and where that
+/// ends.
+struct ToPinion {
+  double distance_mm = 0;          ///< > 0: the flank has not reached the place
+  double radius_mm = 0, Z_mm = 0;  ///< of the plain flank's place, from the pinion's axis and along it
+};
+/// Nothing beyond the pinion's involute. @param field  its modification; null: plain. @param phi  its turn
+[[nodiscard]] std::optional<ToPinion> to_pinion(const Pinion<double>& pinion, const modification::Field* field,
+                                                int side, const Pinion<double>::Place& place, double phi);
 
 struct RollOptions {
   int steps = 48;              ///< positions a pitch
@@ -98,14 +114,26 @@ struct FlankPattern {
 };
 
 struct RollResult {
-  std::vector<RollPosition> cycle;                 ///< one pitch
-  double error_mean_rad = 0, error_range_rad = 0;  ///< mean and peak to peak
-  double contact_ratio = 0;                        ///< mean number of touching teeth
+  std::vector<RollPosition> cycle;  ///< one pitch
+  /// One pair alone, through all of its mesh and on its edges: turns, error and place.
+  std::vector<RollPosition> pair;
+  double error_mean_rad = 0,
+         error_range_rad = 0;  ///< mean; peak to peak, also where one pair takes over from another between positions
+  double contact_ratio = 0;    ///< mean number of touching teeth
   int least_touching = 0, most_touching = 0;
   double marking_ratio = 0;  ///< the same with the compound's thickness
   int least_marking = 0, most_marking = 0;
   std::vector<FlankPattern> patterns;  ///< one a member
 };
+
+/// Where one pair takes over from another between two positions, as if their curves were straight there: the value of
+/// both. a, b: the pair that bears before and the one that bears after; 0, 1: at the two positions. Nothing where they
+/// do not cross.
+[[nodiscard]] inline std::optional<double> handover(double a_0, double a_1, double b_0, double b_1) {
+  const double before = b_0 - a_0, after = b_1 - a_1;
+  if (!(before * after < 0)) return std::nullopt;
+  return a_0 + (a_1 - a_0) * before / (before - after);
+}
 
 /// Rolls the members (same side, same gear) through one pitch. Refused: no position in which they meet.
 [[nodiscard]] Result<RollResult> roll(const std::vector<ContactMember>& members, const RollOptions& options = {});

@@ -111,8 +111,7 @@ class PositionProblem {
 
   [[nodiscard]] double unloaded_gap(const PairRing& ring, const Segment& s) const {
     double gap = pair_.options.gap ? pair_.options.gap(s) : 0;
-    const contact::Misalignment& m = pair_.options.moved;
-    if (m.offset_mm == 0 && m.axial_mm == 0 && m.angle_rad == 0) return gap;
+    if (pair_.options.moved.none()) return gap;
     const double phi = phi_ + s.tooth * 2 * kPi / pair_.pinion_teeth;
     const auto place = ring.moved.place(s.nearest);
     if (!(place.radius > ring.moved.r_b)) return gap;

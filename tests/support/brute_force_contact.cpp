@@ -34,6 +34,56 @@ double modified_azimuth(const face_gear::FaceGear& gear, int zone, int side, dou
 }
 }  // namespace
 
+PinionByTheWords::PinionByTheWords(const face_gear::FaceGear& gear, int zone, int side, int teeth,
+                                   const contact::Misalignment& moved,
+                                   const std::vector<modification::Modification>& modifications)
+    : side_(side), zone_(zone), modifications_(modifications) {
+  const face_gear::FaceGearRing& ring = gear.rings().at(std::size_t(zone));
+  const auto& f = ring.surface;
+  const auto& parameters = gear.parameters();
+  const double m_t = f.shaper.m_t, r_p = m_t * teeth / 2;
+  alpha_ = f.shaper.alpha_t;
+  r_b_ = r_p * std::cos(alpha_);
+  r_a_ = r_p + parameters.addendum_coefficient * parameters.module_mm;
+  twist_ = std::tan(ring.zone.helix_angle_rad) / r_p;
+  L0_ = f.L0;
+  space_ = kPiHere / (2 * teeth);
+  depth_ = 2 * parameters.addendum_coefficient * parameters.module_mm;
+  const auto section = [&](double r) {  // where the pitch line is at radius r
+    return (std::sqrt(r * r - f.E * f.E) + m_t * f.shaper.teeth / 2 * f.Cg) / f.Sg;
+  };
+  from_ = section(ring.zone.inner_radius_mm);
+  to_ = section(ring.zone.outer_radius_mm);
+  const double g = parameters.shaft_angle_rad, g_moved = g + moved.angle_rad;
+  placed_.a = {std::sin(g_moved), 0, -std::cos(g_moved)};
+  placed_.d = {-std::cos(g_moved), 0, -std::sin(g_moved)};
+  placed_.b = {0, 1, 0};
+  placed_.foot = Vec3(0, parameters.offset_mm + moved.offset_mm, moved.gear_axial_mm) +
+                 0.5 * m_t * (f.shaper.teeth - teeth) * Vec3(-std::cos(g), 0, -std::sin(g)) +
+                 moved.axial_mm * placed_.a;
+}
+
+Vec3 PinionByTheWords::plain(double R, double Z) const {
+  const double roll = std::acos(std::min(1.0, r_b_ / R));
+  // Half the space grows outwards: on the pitch circle `space_`, elsewhere plus the difference of the involute
+  // functions.
+  const double half = space_ + (std::tan(roll) - roll) - (std::tan(alpha_) - alpha_),
+               angle = side_ * half + twist_ * (Z - L0_);
+  return {R * std::cos(angle), R * std::sin(angle), Z};
+}
+
+Vec3 PinionByTheWords::own(double R, double Z) const {
+  const Vec3 q = plain(R, Z);
+  double taken = 0;
+  for (const auto& m : modifications_)
+    if (m.meets(side_, zone_)) taken += taken_by_the_words<double>(m, r_a_ - R, Z, depth_, from_, to_);
+  if (taken == 0 || R <= r_b_ + 1e-3) return q;
+  const double h = 1e-4;  // into the material: away from the space
+  Vec3 into = (plain(R + h, Z) - plain(R - h, Z)).cross(plain(R, Z + h) - plain(R, Z - h)).normalized();
+  if (side_ * (q.x() * into.y() - q.y() * into.x()) < 0) into = -into;
+  return q + taken * into;
+}
+
 BruteForceContact::BruteForceContact(const face_gear::FaceGear& gear, int zone, int side, int pinion_teeth,
                                      const contact::Misalignment& moved,
                                      const std::vector<modification::Modification>& on_pinion)
@@ -60,48 +110,17 @@ BruteForceContact::BruteForceContact(const face_gear::FaceGear& gear, int zone, 
     }
   }
 
-  // The pinion's cloud from the textbook involute, in its own axes.
-  const double m_t = f.shaper.m_t, alpha = f.shaper.alpha_t, r_p = m_t * pinion_teeth / 2, r_b = r_p * std::cos(alpha);
-  const double r_a = r_p + parameters.addendum_coefficient * parameters.module_mm;
-  const double beta = ring.zone.helix_angle_rad, twist = std::tan(beta) / r_p;
-  const double thickness = kPiHere / (2 * pinion_teeth);  // half a tooth space on the pitch circle
-  const double shift = 0.5 * m_t * (f.shaper.teeth - pinion_teeth);
+  // The pinion's cloud, in its own axes.
+  const PinionByTheWords pinion(gear, zone, side, pinion_teeth, moved, on_pinion);
   const double Z_from = std::sqrt(r_in_ * r_in_ - 900) - 4, Z_to = r_out_ + 4;
   const int along = 900, high = 240;
-  const auto plain = [&](double R, double Z) {
-    const double roll = std::acos(std::min(1.0, r_b / R));
-    // Half the space grows outwards: on the pitch circle `thickness`, elsewhere plus the difference of the involute
-    // functions.
-    const double half = thickness + (std::tan(roll) - roll) - (std::tan(alpha) - alpha);
-    const double angle = side * half + twist * (Z - f.L0);
-    return Vec3(R * std::cos(angle), R * std::sin(angle), Z);
-  };
-  const auto section = [&](double r) {  // where the pitch line is at radius r
-    return (std::sqrt(r * r - f.E * f.E) + m_t * f.shaper.teeth / 2 * f.Cg) / f.Sg;
-  };
   for (int n = 0; n < along; ++n)
     for (int k = 0; k < high; ++k) {
-      const double Z = Z_from + (Z_to - Z_from) * n / (along - 1), R = r_b + (r_a - r_b) * k / (high - 1);
-      Vec3 q = plain(R, Z);
-      double taken = 0;
-      for (const auto& m : on_pinion)
-        if (m.meets(side, zone))
-          taken += taken_by_the_words<double>(m, r_a - R, Z, 2 * parameters.addendum_coefficient * parameters.module_mm,
-                                              section(r_in_), section(r_out_));
-      if (taken != 0 && R > r_b + 1e-3) {  // into the material: away from the space
-        const double h = 1e-4;
-        Vec3 into = (plain(R + h, Z) - plain(R - h, Z)).cross(plain(R, Z + h) - plain(R, Z - h)).normalized();
-        if (side * (q.x() * into.y() - q.y() * into.x()) < 0) into = -into;
-        q += taken * into;
-      }
-      pinion_.push_back(q);
+      const double Z = Z_from + (Z_to - Z_from) * n / (along - 1),
+                   R = pinion.r_b() + (pinion.r_a() - pinion.r_b()) * k / (high - 1);
+      pinion_.push_back(pinion.own(R, Z));
     }
-  const double g = parameters.shaft_angle_rad, g_moved = g + moved.angle_rad;
-  a_ = {std::sin(g_moved), 0, -std::cos(g_moved)};
-  d_ = {-std::cos(g_moved), 0, -std::sin(g_moved)};
-  b_ = {0, 1, 0};
-  foot_ = Vec3(0, parameters.offset_mm + moved.offset_mm, 0) + shift * Vec3(-std::cos(g), 0, -std::sin(g)) +
-          moved.axial_mm * a_;
+  placed_ = pinion.placed();
 }
 
 double BruteForceContact::azimuth_at(double r, double z) const {
@@ -127,7 +146,7 @@ double BruteForceContact::gear_turn(double phi_1) const {
     const double turn = phi_1 + tooth * 2 * kPiHere / pinion_teeth_, c = std::cos(turn), s = std::sin(turn);
     for (const Vec3& q : pinion_) {
       const double x = c * q.x() - s * q.y(), y = s * q.x() + c * q.y();
-      const Vec3 p = foot_ + q.z() * a_ + x * d_ + y * b_;
+      const Vec3 p = placed_.foot + q.z() * placed_.a + x * placed_.d + y * placed_.b;
       const double azimuth = azimuth_at(std::hypot(p.x(), p.y()), p.z());
       if (std::isnan(azimuth)) continue;
       const double needed = std::atan2(p.y(), p.x()) - azimuth - tooth * pitch_;

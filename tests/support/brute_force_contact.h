@@ -9,6 +9,30 @@
 
 namespace toothpath::test {
 
+/// One flank of a pinion from the textbook involute and the words of its modifications, and where its axis stands.
+class PinionByTheWords {
+ public:
+  PinionByTheWords(const face_gear::FaceGear& gear, int zone, int side, int teeth,
+                   const contact::Misalignment& moved = {},
+                   const std::vector<modification::Modification>& modifications = {});
+  /// The pinion's axis a, down d and across b, and where Z = 0 is; gear frame at a turn of 0.
+  struct Placed {
+    Vec3 foot, a, d, b;
+  };
+  [[nodiscard]] const Placed& placed() const { return placed_; }
+  [[nodiscard]] double r_b() const { return r_b_; }
+  [[nodiscard]] double r_a() const { return r_a_; }
+  /// The place whose plain one is on radius R > r_b and in section Z, at a turn of 0: (x along d, y along b, Z).
+  [[nodiscard]] Vec3 own(double R, double Z) const;
+
+ private:
+  [[nodiscard]] Vec3 plain(double R, double Z) const;
+  int side_, zone_;
+  std::vector<modification::Modification> modifications_;
+  double alpha_, r_b_, r_a_, twist_, L0_, space_, depth_, from_, to_;
+  Placed placed_;
+};
+
 class BruteForceContact {
  public:
   BruteForceContact(const face_gear::FaceGear& gear, int zone, int side, int pinion_teeth,
@@ -27,7 +51,7 @@ class BruteForceContact {
   int columns_, rows_;
   std::vector<double> azimuth_, low_, top_;  ///< gear flank as columns of constant radius; ends of every column
   std::vector<Vec3> pinion_;                 ///< cloud at phi_1 = 0, about its axis: (x along d, y along b, Z)
-  Vec3 foot_, a_, d_, b_;
+  PinionByTheWords::Placed placed_;
 };
 
 }  // namespace toothpath::test
