@@ -1,17 +1,22 @@
 #include "app/commands/contact.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <optional>
+#include <tuple>
 
+#include "app/base/new_file.h"
 #include "app/base/units.h"
 #include "app/job/file.h"
 #include "app/process/flow/cut_flanks.h"
 #include "app/process/flow/stages.h"
+#include "geometry/base/printable.h"
 
 namespace toothpath::commands {
 namespace {
 
-const std::vector<std::string> kContactOutputs = {"contact.csv",  "transmission.csv", "contact.json",
-                                                  "contact.html", "loaded.csv",       "pressure.csv"};
+const std::vector<std::string> kContactOutputs = {"contact.csv",  "ease_off.csv", "transmission.csv", "contact.json",
+                                                  "contact.html", "loaded.csv",   "pressure.csv"};
 
 const std::vector<std::string> kDecks = {"ring_0_flank_plus.inp", "ring_0_flank_minus.inp", "ring_1_flank_plus.inp",
                                          "ring_1_flank_minus.inp"};
@@ -19,9 +24,36 @@ const std::vector<std::string> kDecks = {"ring_0_flank_plus.inp", "ring_0_flank_
 /// Rows that resolve the cusps of a finishing operation: several to a pass.
 constexpr int kCutRows = 241, kCutColumns = 33;
 
+/// Options that contradict each other, or a file that is there already.
+Status check_request(const ContactRequest& r) {
+  const auto usage = [](std::string message) { return Diagnostic{DiagnosticKind::usage, {}, std::move(message)}; };
+  if (!r.optimise && (!r.modify.empty() || !r.write_file.empty()))
+    return usage(fmt::format("{} belongs to --optimise", r.modify.empty() ? "--write" : "--modify"));
+  if (!r.modify.empty() && std::find(std::begin(process::kModifiable), std::end(process::kModifiable), r.modify) ==
+                               std::end(process::kModifiable))
+    return usage(fmt::format("--modify {}: gear, pinion or both is needed", printable(r.modify)));
+  if (r.write_file.empty()) return Ok{};
+  if (std::filesystem::exists(r.write_file))
+    return usage(fmt::format("--write: {} exists already, and is not replaced", r.write_file));
+  for (const auto& [given, option, key] :
+       {std::tuple(r.pinion_teeth.has_value(), "--pinion-teeth", "pinion_teeth"),
+        {r.offset_error_mm.has_value(), "--offset-error", "offset_error"},
+        {r.angle_error_deg.has_value(), "--angle-error", "angle_error"},
+        {r.axial_error_mm.has_value(), "--axial-error", "axial_error"},
+        {r.wheel_axial_error_mm.has_value(), "--wheel-axial-error", "gear_axial_error"},
+        {r.compound_um.has_value(), "--compound", "compound"}})
+    if (given)
+      return usage(
+          fmt::format("{} and --write contradict each other: the job that is written must say it, as {} in "
+                      "[contact]",
+                      option, key));
+  return Ok{};
+}
+
 }  // namespace
 
 CommandOutcome run_contact(const ContactRequest& request) {
+  if (const Status fits = check_request(request); !fits) return failed(fits.error());
   app::Progress progress(request.quiet);
   app::StageClock clock(progress);
   auto output = app::OutputDir::open(request.out_dir, kContactOutputs, {request.job_file, request.other_job});
@@ -49,7 +81,14 @@ CommandOutcome run_contact(const ContactRequest& request) {
     if (!written.errors.empty()) return written;
     found.summary += "  decks in " + request.ccx_dir + "\n";
   }
+  if (!found.job_text.empty()) {
+    if (const Status written = app::write_new_file(request.write_file, found.job_text); !written)
+      return failed(written.error());
+    found.summary += "  job in " + request.write_file + "\n";
+  }
   CommandOutcome outcome;
+  if (found.missed) outcome.exit_code = app::ExitCode::unverified;
+  if (found.missed && !request.write_file.empty()) found.summary += "  no job was written\n";
   outcome.report_json = std::move(found.json);
   outcome.summary = found.summary + "  files in " + request.out_dir + "\n";
   progress.clear();
@@ -72,7 +111,7 @@ void add_contact(Commands& commands) {
         set.text("--mate", request.other_job,
                  "bevel gears: job of the mate (default: by the rules of the pair, same mill)", "JOB");
         set.number("--wheel-axial-error", request.wheel_axial_error_mm,
-                   "bevel gears: wheel off its place along its axis", job::kMoved);
+                   "gear, or wheel of a bevel pair, off its place along its axis, away from its mate", job::kMoved);
         set.number("--torque", request.torque_Nm, "load the elastic pair, too: torque on the gear",
                    job::kContactTorque);
         set.flag("--on-pinion", request.torque_on_pinion, "that torque is the pinion's");
@@ -80,6 +119,11 @@ void add_contact(Commands& commands) {
         set.whole_number("--positions", request.positions, "positions of the loaded pair over a pitch (default 24)",
                          job::kContactPositions);
         set.text("--ccx", request.ccx_dir, "with --torque: write decks of CalculiX, a ring and flank each", "DIR");
+        set.flag("--optimise", request.optimise,
+                 "seek crownings and reliefs that keep the pattern inside over the box of [contact.misalignment]");
+        set.word("--modify", request.modify, "whose flanks --optimise may modify (default both; shaped gears: pinion)",
+                 "WHO", process::kModifiable);
+        set.text("--write", request.write_file, "with --optimise: the job with what was found, a new file", "JOB.toml");
         set.flag("--as-cut", request.as_cut, "roll the surface that the job cuts, too");
       },
       run_contact));

@@ -87,6 +87,12 @@ struct ContactLoad {
 /// What the torque of [contact.load] and of `contact --torque`, and the positions may be.
 inline constexpr toml::Range kContactTorque{1e-6, 1e9, " N m"}, kContactPositions{1, 200};
 
+/// The [contact.misalignment] table: how far the pair may stand off its place, as much either way. docs/ease_off.md.
+struct MisalignmentBox {
+  contact::Misalignment most;  ///< all >= 0
+  double margin = 0.05;        ///< share of face and profile that an optimised pattern keeps off the edges
+};
+
 /// The [contact] table: the pinion that runs with the gear, and where it stands.
 struct ContactSettings {
   int pinion_teeth = 0;  ///< N_p; 0: mate_teeth of the gear
@@ -94,6 +100,7 @@ struct ContactSettings {
   double compound_mm = 0.006;                             ///< thickness of the marking compound
   std::vector<modification::Modification> modifications;  ///< of the pinion's flanks
   std::optional<ContactLoad> load;
+  std::optional<MisalignmentBox> box;
 };
 
 /// The [material] table: what cutting costs, and of what the tools are. docs/force.md.

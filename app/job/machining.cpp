@@ -353,6 +353,18 @@ ContactLoad read_contact_load(toml::TableReader& table) {
   return load;
 }
 
+MisalignmentBox read_misalignment(toml::TableReader& table) {
+  MisalignmentBox box;
+  constexpr toml::Range kEitherWay{0, 5, " mm"};
+  box.most.offset_mm = table.number_or("offset", kEitherWay, 0);
+  box.most.angle_rad = radians(table.number_or("angle", {0, 1, " deg"}, 0));
+  box.most.axial_mm = table.number_or("pinion_axial", kEitherWay, 0);
+  box.most.gear_axial_mm = table.number_or("gear_axial", kEitherWay, 0);
+  box.margin = table.number_or("margin", {0, 0.4}, box.margin);
+  table.finish();
+  return box;
+}
+
 }  // namespace
 
 ContactSettings read_contact(toml::TableReader& table, const Job& job) {
@@ -362,12 +374,20 @@ ContactSettings read_contact(toml::TableReader& table, const Job& job) {
   c.moved.axial_mm = table.number_or("axial_error", kMoved, c.moved.axial_mm);
   c.moved.angle_rad = radians(table.number_or("angle_error", kAngleError, degrees(c.moved.angle_rad)));
   c.compound_mm = table.number_or("compound", kCompound, c.compound_mm);
-  if (job.face_gear()) c.modifications = read_modifications(table, job.directory());
-  else if (table.misplaced("modification"))
-    table.refuse("modification",
-                 "modification belongs to the pinions of face gears; this gear is {}, whose mate has a job of its "
-                 "own: [[gear.modification]] there, and --mate",
-                 job.gear_type());
+  if (job.face_gear()) {
+    c.moved.gear_axial_mm = table.number_or("gear_axial_error", kMoved, c.moved.gear_axial_mm);
+    c.modifications = read_modifications(table, job.directory());
+    if (auto box = table.table("misalignment")) c.box = read_misalignment(*box);
+  } else {
+    if (table.misplaced("modification"))
+      table.refuse("modification",
+                   "modification belongs to the pinions of face gears; this gear is {}, whose mate has a job of its "
+                   "own: [[gear.modification]] there, and --mate",
+                   job.gear_type());
+    for (const char* key : {"gear_axial_error", "misalignment"})
+      if (table.misplaced(key))
+        table.refuse(key, "{} belongs to face gears and their pinions; this gear is {}", key, job.gear_type());
+  }
   if (auto load = table.table("load")) c.load = read_contact_load(*load);
   table.finish();
   return c;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -105,7 +106,7 @@ struct Correction {
 struct ContactAsked {
   std::optional<int> pinion_teeth;
   std::optional<double> offset_error_mm, angle_error_deg, axial_error_mm, compound_um;
-  std::optional<double> wheel_axial_error_mm;  ///< bevel gears
+  std::optional<double> wheel_axial_error_mm;  ///< of the gear, or of the wheel of a bevel pair
   std::string other_job;                       ///< bevel gears: the mate
   std::optional<double> torque_Nm;             ///< face gears: load the pair, too
   bool torque_on_pinion = false;               ///< that torque is the pinion's
@@ -113,11 +114,18 @@ struct ContactAsked {
   std::optional<int> positions;                ///< of the loaded pair over a pitch
   std::string ccx_dir;                         ///< where decks of CalculiX go; empty: none
   bool as_cut = false;                         ///< face gears: the surface that the job's operations cut, too
+  bool optimise = false;                       ///< face gears: seek crownings and reliefs for the box of misalignments
+  std::string modify;                          ///< whose flanks they may take: a word of kModifiable; empty: both
+  std::string write_file;                      ///< where the job with what was found goes; empty: nowhere
 };
+/// Whose flanks `contact --optimise` may modify.
+inline constexpr std::string_view kModifiable[] = {"gear", "pinion", "both"};
 struct ContactFound {
   NamedFiles files;
   NamedFiles decks;  ///< of CalculiX, where they are asked for
   std::string json, summary;
+  bool missed = false;   ///< modifications were sought, and none keep the pattern inside
+  std::string job_text;  ///< the job with what was found; empty: nothing was, or nobody asked
 };
 
 /// The gear that a job asks for. The job must outlive it.

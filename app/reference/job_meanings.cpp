@@ -182,6 +182,7 @@ constexpr Meaning kJobMeanings[] = {
     {"contact.offset_error", "Error of the offset."},
     {"contact.axial_error", "Error along the pinion's axis, away from the gear's."},
     {"contact.angle_error", "Error of the shaft angle."},
+    {"contact.gear_axial_error", "Error along the gear's axis, away from the pinion."},
     {"contact.compound", "Thickness of the marking compound: what is nearer shows as contact."},
     {"contact.modification",
      "What the flanks of the pinion take off the plain ones (docs/modifications.md); it never adds material."},
@@ -199,6 +200,16 @@ constexpr Meaning kJobMeanings[] = {
     {"contact.modification.file",
      "Of a grid: CSV with the line `along,depth,removal` and then these numbers in mm; along is the distance along the "
      "pinion's axis from the gear's."},
+    {"contact.misalignment",
+     "How far the pair may stand off its place, as much either way: the table of misalignments, and the box of "
+     "`contact "
+     "--optimise` (docs/ease_off.md)."},
+    {"contact.misalignment.offset", "Of the offset."},
+    {"contact.misalignment.angle", "Of the shaft angle."},
+    {"contact.misalignment.pinion_axial", "Of the pinion along its axis."},
+    {"contact.misalignment.gear_axial", "Of the gear along its axis."},
+    {"contact.misalignment.margin",
+     "Share of the face and of the profile that an optimised pattern keeps off the edges."},
     {"contact.load", "Load under which the elastic pair is computed, too; face gears only."},
     {"contact.load.torque", "Torque on the gear, or on the pinion."},
     {"contact.load.torque_on", "Whose torque it is."},

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "tests/app/program.h"
 
@@ -35,8 +36,8 @@ TEST(ContactCommand, OffsetGear) {
   const TestDir dir;
   const std::string out = dir / "out";
   const Json report = contact_of({"contact", kSamples + "/offset_shaped.toml", "--pinion-teeth", "23", "--out", out});
-  EXPECT_EQ(names_in(out),
-            (std::vector<std::string>{"contact.csv", "contact.html", "contact.json", "transmission.csv"}));
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"contact.csv", "contact.html", "contact.json", "ease_off.csv",
+                                                     "transmission.csv"}));
   EXPECT_EQ(report, Json::parse(file_text(out + "/contact.json")));
   ASSERT_EQ(report.at("flanks").size(), 2u);
   const double tip[] = {134.031, 132.173}, pinion_tip[] = {132.266, 133.759};
@@ -83,14 +84,57 @@ TEST(ContactCommand, KeysAndOptions) {
   }
 }
 
+/// The ease-off in the report, as CSV, on the screen and drawn; the three tell one map, and it is that of the keys.
+TEST(ContactCommand, EaseOff) {
+  const TestDir dir;
+  const std::string out = dir / "out";
+  const auto run = run_program({"contact", kSamples + "/spur_modified.toml", "--out", out});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json flank = Json::parse(file_text(out + "/contact.json")).at("flanks")[1];  // -1: without the helix slope
+  const Json& map = flank.at("ease_off");
+  const Json& grid = map.at("zones")[0];
+  ASSERT_EQ(grid.at("um").size(), 11u);
+  ASSERT_EQ(grid.at("r").size(), 13u);
+  // At the gear's tip its relief of 12 um, at the ends the crowning of 8 um on top of it.
+  const Json& tip = grid.at("um")[10];
+  // A place of the modified tip has its plain one some micrometres above the tip, where the relief goes on.
+  EXPECT_NEAR(tip[6].get<double>(), 12, 0.2);
+  EXPECT_NEAR(tip[12].get<double>(), 20, 0.2);
+  EXPECT_NEAR(map.at("greatest").at("um").get<double>(), tip[12].get<double>(), 1e-3);
+  EXPECT_NEAR(map.at("least").at("um").get<double>(), 0, 1e-12);
+  // The same places in ease_off.csv.
+  std::istringstream csv(file_text(out + "/ease_off.csv"));
+  std::string line;
+  std::getline(csv, line);
+  EXPECT_EQ(line, "surface,flank,zone,row,column,r,z,ease_off_um,phi_2_deg,pinion_radius,pinion_Z");
+  int found = 0, lines = 0;
+  while (std::getline(csv, line)) {
+    ++lines;
+    if (!line.starts_with("exact,-1,0,40,24,")) continue;
+    ++found;
+    std::istringstream cells(line);
+    std::string cell;
+    for (int k = 0; k < 8; ++k) std::getline(cells, cell, ',');
+    EXPECT_NEAR(std::stod(cell), tip[6].get<double>(), 1e-9) << line;
+  }
+  EXPECT_EQ(found, 1);
+  EXPECT_EQ(lines, 2 * 41 * 49);
+  EXPECT_NE(run.out.find("ease-off: up to 20."), std::string::npos) << run.out;
+  for (const char* words : {"Ease-off: flank -1, exact", "Motion curves of the pairs", "Misaligned"})
+    EXPECT_NE(file_text(out + "/contact.html").find(words), std::string::npos) << words;
+  // A pinion that is the plain gear's shaper has none.
+  const auto plain = run_program({"contact", kSamples + "/spur_quick.toml", "--out", dir / "plain"});
+  EXPECT_NE(plain.out.find("ease-off: none, the flanks are conjugate"), std::string::npos) << plain.out;
+}
+
 /// A torque loads the elastic pair: numbers, files, charts; keys of [contact.load] and options above them.
 TEST(ContactCommand, UnderLoad) {
   const TestDir dir;
   const std::string out = dir / "out";
   const Json report =
       contact_of({"contact", kSamples + "/dhfg_paper.toml", "--torque", "532", "--positions", "4", "--out", out});
-  EXPECT_EQ(names_in(out), (std::vector<std::string>{"contact.csv", "contact.html", "contact.json", "loaded.csv",
-                                                     "pressure.csv", "transmission.csv"}));
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"contact.csv", "contact.html", "contact.json", "ease_off.csv",
+                                                     "loaded.csv", "pressure.csv", "transmission.csv"}));
   const Json& loaded = report.at("loaded");
   EXPECT_EQ(loaded.at("pinion_axial"), "floating");
   ASSERT_EQ(loaded.at("flanks").size(), 2u);
@@ -159,7 +203,8 @@ TEST(ContactCommand, RefusesLoadsThatItDoesNotCompute) {
 TEST(ContactCommand, AFailedRunLeavesEverythingAsItWas) {
   const TestDir dir;
   const std::string out = dir / "out", good = kSamples + "/offset_shaped.toml", bevel = kSamples + "/bevel_pinion.toml";
-  const std::vector<std::string> pages = {"contact.csv", "contact.html", "contact.json", "transmission.csv"},
+  const std::vector<std::string> pages = {"contact.csv", "contact.html", "contact.json", "ease_off.csv",
+                                          "transmission.csv"},
                                  kept = {"my notes.txt", "program.ngc", "report.html"};
   const auto older = [&] {
     std::filesystem::create_directories(out);

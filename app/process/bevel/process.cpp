@@ -210,8 +210,9 @@ class BevelProcess final : public process::GearProcess {
     return std::vector{process::needs_face_gear(job_)};
   }
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
-    for (const auto& [given, option] :
-         {std::pair(asked.pinion_teeth.has_value(), "--pinion-teeth"), {asked.as_cut, "--as-cut"}})
+    for (const auto& [given, option] : {std::pair(asked.pinion_teeth.has_value(), "--pinion-teeth"),
+                                        {asked.as_cut, "--as-cut"},
+                                        {asked.optimise, "--optimise"}})
       if (given)
         return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs a face_gear", job_.gear_type(), option);
     if (asked.torque_Nm || (job_.contact && job_.contact->load))

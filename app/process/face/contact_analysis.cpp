@@ -10,9 +10,14 @@
 namespace toothpath::face {
 namespace {
 
+constexpr std::size_t kMotionStride = 4;  // positions of the roll to one of contact.json
+
+bool is_modified(const ContactOfSide& side) {
+  return std::any_of(side.members.begin(), side.members.end(), [](const auto& m) { return m.modified(); });
+}
+
 std::string kind_of(const ContactOfSide& side) {
-  if (std::any_of(side.members.begin(), side.members.end(), [](const auto& m) { return m.modified(); }))
-    return "modified";
+  if (is_modified(side)) return "modified";
   bool line = false, whole = false;
   for (std::size_t m = 0; m < side.members.size(); ++m) {
     line |= side.paths[m] && side.paths[m]->line_contact;
@@ -23,27 +28,16 @@ std::string kind_of(const ContactOfSide& side) {
   return side.as_cut || side.roll.error_range_rad < kNoError ? "point" : "point and edge";
 }
 
-/// The modification of the pinion's flank that runs on this one; null: plain.
-std::shared_ptr<const modification::Field> pinion_field(const face_gear::FaceGear& gear,
-                                                        const job::ContactSettings& settings,
-                                                        const contact::Pinion<double>& pinion, int zone, int side) {
-  modification::Field field(settings.modifications, side, zone,
-                            contact::rectangle_of(pinion, gear.rings()[static_cast<std::size_t>(zone)]));
-  if (field.empty()) return nullptr;
-  return std::make_shared<const modification::Field>(std::move(field));
-}
-
 Result<ContactOfSide> side_of(const face_gear::FaceGear& gear, std::vector<contact::ContactFlank> flanks,
                               const job::ContactSettings& settings, int steps, bool as_cut) {
   ContactOfSide side;
   side.side = flanks.front().side;
   side.as_cut = as_cut;
   for (auto& flank : flanks) {
-    const auto& surface = gear.rings()[static_cast<std::size_t>(flank.zone)].surface;
-    const auto pinion = contact::make_pinion(surface, settings.pinion_teeth, settings.moved);
-    auto field = pinion_field(gear, settings, pinion, flank.zone, side.side);
-    side.members.push_back({std::move(flank), pinion, std::move(field)});
+    side.members.push_back(
+        contact::make_member(gear, std::move(flank), settings.pinion_teeth, settings.moved, settings.modifications));
     const contact::ContactMember& member = side.members.back();
+    const auto& surface = member.flank.surface;
     // The closed form is of plain flanks.
     side.paths.push_back(member.modified() ? std::nullopt : contact::contact_path(surface, member.pinion, side.side));
     side.ranges.push_back(side.paths.back() && !side.paths.back()->line_contact
@@ -57,6 +51,10 @@ Result<ContactOfSide> side_of(const face_gear::FaceGear& gear, std::vector<conta
   if (!rolled) return rolled.error();
   side.roll = std::move(*rolled);
   side.kind = kind_of(side);
+  if (auto found = contact::ease_off(side.members)) side.ease_off = std::move(*found);
+  for (std::size_t m = 0; side.ease_off && m < side.members.size(); ++m)
+    side.places.push_back(
+        contact::pattern_place(side.members[m], side.ease_off->maps[m], side.roll.patterns[m], options.compound_mm, 0));
   return side;
 }
 
@@ -77,7 +75,7 @@ std::optional<modification::Refusal> refused_pinion(const face_gear::FaceGear& g
 }
 
 /// The pattern in words, as on a rolling tester: along the tooth or across it, how inclined, where it runs out.
-std::string words_of(const contact::FlankPattern& p) {
+std::string words_of(const contact::FlankPattern& p, const contact::PatternPlace* place, double compound_mm) {
   if (!(p.marked_share > 0)) return "no mark";
   const double inclination = degrees(p.inclination_rad);
   std::string text;
@@ -87,18 +85,37 @@ std::string words_of(const contact::FlankPattern& p) {
   if (p.marked_share <= 0.95 && p.length_mm >= 1.3 * p.width_mm)
     text += fmt::format(", inclined {:.1f} deg", inclination);
   std::string ends;
+  const auto at_pinion = [&](contact::Edge edge) { return place != nullptr && place->reaches(edge, compound_mm); };
   for (const auto& [there, name] : {std::pair(p.at_inner_end, "inner end"),
                                     {p.at_outer_end, "outer end"},
                                     {p.at_tip, "tip"},
-                                    {p.at_fillet, "fillet line"}})
+                                    {p.at_fillet, "fillet line"},
+                                    {at_pinion(contact::Edge::pinion_tip), to_string(contact::Edge::pinion_tip)},
+                                    {at_pinion(contact::Edge::pinion_root), to_string(contact::Edge::pinion_root)}})
     if (there) ends += (ends.empty() ? "" : ", ") + std::string(name);
   return text + (ends.empty() ? "; keeps off all edges" : "; runs out at: " + ends);
 }
 
+}  // namespace
+
+bool is_modified(const ContactAnalysis& analysis) {
+  return std::any_of(analysis.sides.begin(), analysis.sides.end(),
+                     [](const ContactOfSide& side) { return is_modified(side); });
+}
+
+std::string words_of(const contact::Misalignment& moved) {
+  std::string text = fmt::format("offset {:+g} mm, angle {:+g} deg, axial {:+g} mm", moved.offset_mm,
+                                 degrees(moved.angle_rad), moved.axial_mm);
+  if (moved.gear_axial_mm != 0) text += fmt::format(", gear axial {:+g} mm", moved.gear_axial_mm);
+  return text;
+}
+
+namespace {
+
 using Json = nlohmann::ordered_json;
 
 /// Path of contact and pattern in one ring.
-Json zone_json(const ContactOfSide& side, std::size_t m) {
+Json zone_json(const ContactOfSide& side, std::size_t m, double compound_mm) {
   const contact::FlankPattern& p = side.roll.patterns[m];
   Json zone;
   zone["zone"] = side.members[m].flank.zone;
@@ -114,7 +131,17 @@ Json zone_json(const ContactOfSide& side, std::size_t m) {
   } else {
     zone["path"] = nullptr;
   }
-  zone["pattern"] = {{"words", words_of(p)},
+  if (!p.path.empty()) {
+    const double pitch = side.members[m].flank.surface.pitch;
+    const auto place = [](const contact::RollPosition& at) { return Json{{"r", at.radius_mm}, {"z", at.height_mm}}; };
+    zone["rolled_path"] = {{"from", place(p.path.front())},
+                           {"to", place(p.path.back())},
+                           {"pitches", (p.path.back().phi_2 - p.path.front().phi_2) / pitch}};
+  } else {
+    zone["rolled_path"] = nullptr;
+  }
+  const contact::PatternPlace* at = m < side.places.size() ? &side.places[m] : nullptr;
+  zone["pattern"] = {{"words", words_of(p, at, compound_mm)},
                      {"share", p.marked_share},
                      {"r", {p.inner_mm, p.outer_mm}},
                      {"z", {p.low_mm, p.high_mm}},
@@ -126,7 +153,27 @@ Json zone_json(const ContactOfSide& side, std::size_t m) {
                      {"at_outer_end", p.at_outer_end},
                      {"at_tip", p.at_tip},
                      {"at_fillet_line", p.at_fillet}};
+  if (at != nullptr) {
+    zone["pattern"]["at_pinion_tip"] = at->reaches(contact::Edge::pinion_tip, compound_mm);
+    zone["pattern"]["profile"] = at->profile;
+    zone["pattern"]["lead"] = at->lead;
+  }
   return zone;
+}
+
+/// The motion curve of one pair alone, in pitches from where it lags least.
+Json motion_json(const ContactOfSide& side) {
+  const auto& pair = side.roll.pair;
+  const auto least = std::min_element(pair.begin(), pair.end(), [&](const auto& a, const auto& b) {
+    return side.side * a.error_rad < side.side * b.error_rad;
+  });
+  Json json = {{"pitches", Json::array()}, {"urad", Json::array()}};
+  const double pitch = side.members.front().flank.surface.pitch;
+  for (std::size_t k = 0; k < pair.size(); k += kMotionStride) {
+    json["pitches"].push_back((pair[k].phi_2 - least->phi_2) / pitch);
+    json["urad"].push_back((pair[k].error_rad - side.roll.error_mean_rad) * app::kMicro);
+  }
+  return json;
 }
 
 /// Adds the loaded pair where the settings have a load, on the exact flanks and on the cut ones.
@@ -147,6 +194,10 @@ process::ValueOrErrors<ContactAnalysis> with_load(const job::Job& job, const fac
 }
 
 }  // namespace
+
+ease_off::SideMap ease_off_of(const ContactOfSide& side) {
+  return {side.side, side.as_cut ? "cut" : "exact", &side.members, side.ease_off ? &*side.ease_off : nullptr};
+}
 
 process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, const face_gear::FaceGear& gear,
                                                         const job::ContactSettings& asked,
@@ -254,7 +305,8 @@ std::string contact_json(const ContactAnalysis& a) {
   json["gear_teeth"] = a.gear_teeth;
   json["misalignment"] = {{"offset_mm", a.settings.moved.offset_mm},
                           {"axial_mm", a.settings.moved.axial_mm},
-                          {"angle_deg", degrees(a.settings.moved.angle_rad)}};
+                          {"angle_deg", degrees(a.settings.moved.angle_rad)},
+                          {"gear_axial_mm", a.settings.moved.gear_axial_mm}};
   json["compound_um"] = a.settings.compound_mm * app::kUm;
   json["cut_surface"] = a.route.empty() ? Json(nullptr) : Json(a.route);
   json["pinion"] = {
@@ -274,10 +326,15 @@ std::string contact_json(const ContactAnalysis& a) {
     s["pairs_touching"] = {r.least_touching, r.most_touching};
     s["pairs_within_compound"] = {r.least_marking, r.most_marking};
     s["ratio_within_compound"] = r.marking_ratio;
+    s["motion_curve"] = motion_json(side);
+    s["ease_off"] = ease_off::map_json(ease_off_of(side));
     s["zones"] = Json::array();
-    for (std::size_t m = 0; m < side.members.size(); ++m) s["zones"].push_back(zone_json(side, m));
+    for (std::size_t m = 0; m < side.members.size(); ++m)
+      s["zones"].push_back(zone_json(side, m, a.settings.compound_mm));
     json["flanks"].push_back(std::move(s));
   }
+  if (a.misalignments) json["misalignments"] = ease_off::table_json(*a.misalignments);
+  if (a.optimised) json["optimised"] = ease_off::optimised_json(*a.optimised);
   if (a.loaded) json["loaded"] = loaded_json(*a.loaded);
   json["notes"] = a.notes;
   return json.dump(2) + "\n";
@@ -287,9 +344,7 @@ std::string contact_summary(const ContactAnalysis& a) {
   std::string out = fmt::format("contact of {} with a pinion of {} teeth (gear {} teeth), compound {:g} um\n",
                                 a.job_name, a.pinion_teeth, a.gear_teeth, a.settings.compound_mm * app::kUm);
   const contact::Misalignment& moved = a.settings.moved;
-  if (moved.offset_mm != 0 || moved.axial_mm != 0 || moved.angle_rad != 0)
-    out += fmt::format("  misaligned: offset {:+g} mm, angle {:+g} deg, axial {:+g} mm\n", moved.offset_mm,
-                       degrees(moved.angle_rad), moved.axial_mm);
+  if (!moved.none()) out += "  misaligned: " + words_of(moved) + "\n";
   for (const auto& side : a.sides) {
     const contact::RollResult& r = side.roll;
     out += fmt::format("  flank {:+}, {}: {} contact\n", side.side, side.as_cut ? a.route : "exact", side.kind);
@@ -301,6 +356,7 @@ std::string contact_summary(const ContactAnalysis& a) {
     out += fmt::format("    contact ratio {:.3f}, pairs in contact {} to {}; within the compound {:.3f}, {} to {}\n",
                        r.contact_ratio, r.least_touching, r.most_touching, r.marking_ratio, r.least_marking,
                        r.most_marking);
+    out += ease_off::map_summary(ease_off_of(side));
     for (std::size_t m = 0; m < side.members.size(); ++m) {
       const contact::FlankPattern& p = r.patterns[m];
       const std::string zone = side.members.size() > 1 ? fmt::format("zone {}: ", side.members[m].flank.zone) : "";
@@ -310,9 +366,12 @@ std::string contact_summary(const ContactAnalysis& a) {
                            side.paths[m]->point(range->theta_1_from).head<2>().norm(),
                            side.paths[m]->point(range->theta_1_to).head<2>().norm());
       out += fmt::format("    {}pattern: {:.1f} % of the flank, r {:.2f} to {:.2f}, z {:.2f} to {:.2f} mm; {}\n", zone,
-                         p.marked_share * 100, p.inner_mm, p.outer_mm, p.low_mm, p.high_mm, words_of(p));
+                         p.marked_share * 100, p.inner_mm, p.outer_mm, p.low_mm, p.high_mm,
+                         words_of(p, m < side.places.size() ? &side.places[m] : nullptr, a.settings.compound_mm));
     }
   }
+  if (a.misalignments) out += page::table_text(ease_off::table_page(*a.misalignments, ""));
+  if (a.optimised) out += ease_off::optimised_summary(*a.optimised);
   if (a.loaded) out += loaded_summary(*a.loaded);
   for (const auto& note : a.notes) out += "  note: " + note + "\n";
   return out;

@@ -8,6 +8,8 @@
 
 #include "app/job/job.h"
 #include "app/process/cut_flanks.h"
+#include "app/process/face/ease_off/map.h"
+#include "app/process/face/ease_off/optimised_pair.h"
 #include "app/process/face/loaded_contact.h"
 #include "app/process/gear_of_job.h"
 #include "geometry/contact/tooth_contact.h"
@@ -27,7 +29,11 @@ struct ContactOfSide {
   std::vector<std::optional<contact::ContactPath<double>>> paths;  ///< closed form, of the exact surface; one a member
   std::vector<std::optional<contact::PathRange>> ranges;           ///< its part on both flanks
   contact::RollResult roll;
+  std::optional<contact::EaseOff> ease_off;   ///< none: no place has a common normal
+  std::vector<contact::PatternPlace> places;  ///< of the patterns, one a member; empty without an ease-off
 };
+/// Its maps, for those that show them. The side must outlive it.
+[[nodiscard]] ease_off::SideMap ease_off_of(const ContactOfSide& side);
 
 struct ContactAnalysis {
   std::string job_name, job_file;
@@ -35,16 +41,23 @@ struct ContactAnalysis {
   job::ContactSettings settings;
   double pitch_radius_mm = 0, base_radius_mm = 0;  ///< L_p and M2: levers of the transmission error
   double pinion_r_b_mm = 0, pinion_r_p_mm = 0, pinion_r_a_mm = 0;
-  std::vector<ContactOfSide> sides;     ///< +1, -1 exact; then +1, -1 as cut
-  std::optional<LoadedContact> loaded;  ///< where the settings have a load
-  std::string route;                    ///< how the cut surface was made; empty: there is none
+  std::vector<ContactOfSide> sides;                          ///< +1, -1 exact; then +1, -1 as cut
+  std::optional<LoadedContact> loaded;                       ///< where the settings have a load
+  std::optional<ease_off::MisalignmentTable> misalignments;  ///< where the settings have a box
+  std::optional<ease_off::Optimised> optimised;              ///< where that was asked for
+  std::string route;                                         ///< how the cut surface was made; empty: there is none
   std::vector<std::string> notes;
 };
+/// A flank of the pair is not plain.
+[[nodiscard]] bool is_modified(const ContactAnalysis& analysis);
 
 struct ContactGrid {
   int rows = 41, columns = 49;  ///< of the exact flank
   int steps = 48;               ///< positions a pitch
 };
+
+/// "offset +0.1 mm, angle +0 deg, axial +0 mm".
+[[nodiscard]] std::string words_of(const contact::Misalignment& moved);
 
 /// Refused: a pinion that cannot run (place: contact.pinion_teeth or gear.mate_teeth); a flank that is not there; a
 /// pinion out of reach.

@@ -14,10 +14,6 @@ namespace {
 
 constexpr int kLinesAPitch = 4;
 
-std::string name_of(const ContactAnalysis& a, const ContactOfSide& side) {
-  return fmt::format("flank {:+}, {}", side.side, side.as_cut ? a.route : "exact");
-}
-
 std::string pattern_note(const ContactAnalysis& a, const ContactOfSide& side, const contact::FlankPattern& p) {
   std::string note = fmt::format("{:.1f} % of the flank carries compound of {:g} um. ", p.marked_share * 100,
                                  a.settings.compound_mm * app::kUm);
@@ -71,6 +67,10 @@ svg::PatternDrawing drawing(const ContactAnalysis& a, const contact::ContactMemb
 
 }  // namespace
 
+std::string name_of(const ContactAnalysis& a, const ContactOfSide& side) {
+  return fmt::format("flank {:+}, {}", side.side, side.as_cut ? a.route : "exact");
+}
+
 std::vector<ContactFigure> contact_patterns(const ContactAnalysis& a) {
   std::vector<ContactFigure> figures;
   for (const auto& side : a.sides)
@@ -90,14 +90,45 @@ std::vector<ContactFigure> contact_patterns(const ContactAnalysis& a) {
   return figures;
 }
 
+namespace {
+
+/// Curves of single pairs; empty where the ratio is constant.
+svg::LineChart motion_chart(const ContactAnalysis& a) {
+  svg::LineChart motion;
+  motion.title = "Motion curves of the pairs";
+  motion.x_label = "gear turn [pitches]";
+  motion.y_label = "error less its mean [\u00b5rad]";
+  motion.note =
+      "Each pair as if it were alone, through its whole mesh and on its edges; of all pairs the one that lags least "
+      "bears, and where two curves cross one takes over from the other.";
+  for (const auto& side : a.sides) {
+    if (side.as_cut || side.roll.error_range_rad < kNoError) continue;
+    const double pitch = 2 * kPi / a.gear_teeth, start = side.roll.cycle.front().phi_2,
+                 largest = 4 * side.roll.error_range_rad;
+    for (const int tooth : {-1, 0, 1}) {
+      svg::ChartSeries series{fmt::format("flank {:+}, pair {:+}", side.side, tooth), {}, {}};
+      for (const auto& p : side.roll.pair) {
+        const double value = p.error_rad - side.roll.error_mean_rad;
+        if (std::abs(value) > largest) continue;
+        series.x.push_back((p.phi_2 - start) / pitch + tooth);
+        series.y.push_back(value * app::kMicro);
+      }
+      if (!series.x.empty()) motion.series.push_back(std::move(series));
+    }
+  }
+  return motion;
+}
+
+}  // namespace
+
 std::vector<svg::LineChart> contact_charts(const ContactAnalysis& a) {
   svg::LineChart error, pairs;
   error.title = "Transmission error over one pitch";
   error.x_label = "gear turn [pitches]";
   error.y_label = "error less its mean [\u00b5rad]";
-  error.note =
-      "The gear's turn beyond that of the gear ratio, phi_2 - phi_1 N_p/N_2. Rigid bodies, no load. On the exact flank "
-      "the error is a constant wherever contact is inside the flank, also misaligned.";
+  error.note = "The gear's turn beyond that of the gear ratio, phi_2 - phi_1 N_p/N_2. Rigid bodies, no load.";
+  if (!is_modified(a))
+    error.note += " On the exact flank the error is a constant wherever contact is inside the flank, also misaligned.";
   pairs.title = "Pairs in contact over one pitch";
   pairs.x_label = "gear turn [pitches]";
   pairs.y_label = "pairs";
@@ -126,6 +157,7 @@ std::vector<svg::LineChart> contact_charts(const ContactAnalysis& a) {
   };
   std::vector<svg::LineChart> charts;
   if (!flat(error)) charts.push_back(std::move(error));
+  if (auto motion = motion_chart(a); !motion.series.empty()) charts.push_back(std::move(motion));
   charts.push_back(std::move(pairs));
   return charts;
 }

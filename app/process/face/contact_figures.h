@@ -15,6 +15,9 @@ struct ContactFigure {
   std::string caption, svg, note;
 };
 
+/// "flank +1, exact"; of a cut flank its route.
+[[nodiscard]] std::string name_of(const ContactAnalysis& analysis, const ContactOfSide& side);
+
 /// Patterns on gear and pinion of every side, exact and as cut.
 [[nodiscard]] std::vector<ContactFigure> contact_patterns(const ContactAnalysis& analysis);
 /// Transmission error and number of pairs over one pitch.

@@ -316,11 +316,9 @@ class FaceProcess final : public process::GearProcess {
     return shaped_flanks(job_, gear_, std::move(places).value());
   }
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
-    for (const auto& [given, option] : {std::pair(!asked.other_job.empty(), "--mate"),
-                                        {asked.wheel_axial_error_mm.has_value(), "--wheel-axial-error"}})
-      if (given)
-        return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs an equal_base_circle_bevel_gear",
-                       job_.gear_type(), option);
+    if (!asked.other_job.empty())
+      return fail_at(job_.where("gear.type"), "type = \"{}\", but --mate needs an equal_base_circle_bevel_gear",
+                     job_.gear_type());
     return Ok{};
   }
   [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,

@@ -203,7 +203,8 @@ std::string svg_flank_field(const FlankFieldDrawing& p) {
   fill_cells(
       canvas, f, p.rows, p.columns, p.x, p.y, classes,
       [&](int r, int c) {
-        return class_of_value((value(r, c) + value(r, c + 1) + value(r + 1, c) + value(r + 1, c + 1)) / 4);
+        const double mean = (value(r, c) + value(r, c + 1) + value(r + 1, c) + value(r + 1, c + 1)) / 4;
+        return std::isnan(mean) ? -1 : class_of_value(mean);
       },
       fills);
   outline(canvas, f, p.rows, p.columns, p.x, p.y);

@@ -26,7 +26,7 @@ struct PatternDrawing {
 [[nodiscard]] std::string svg_contact_pattern(const PatternDrawing& drawing);
 
 /// A signed quantity on the flank (deviation, difference of two) as colours, red below zero and blue above, -largest ..
-/// +largest.
+/// +largest. Cells with a NaN corner stay empty.
 struct FlankFieldDrawing {
   std::string title, x_label, y_label, unit;
   int rows = 0, columns = 0;
