@@ -99,10 +99,11 @@ Status prove(Check& check) {
   if (!bodies) return bodies.error();
   bodies::MovesJudge moves = flow::judge_of(check.machine, std::move(*bodies), check.job, check.limits.clearance_mm);
   page::StateRecorder states = flow::recorder_of(check.job, check.gear.process->part().teeth);
-  auto proof = process::prove_program({check.text, check.request.program_file, check.job, check.machine, &moves,
-                                       [&](const readback::ExecutedMove& move) { states.add(move); },
-                                       flow::graphics_blank(*check.gear.process, *check.job.setup)},
-                                      {}, check.milling->check(), check.clock);
+  auto proof = process::prove_program(
+      {check.text, check.request.program_file, check.job, check.machine, &moves,
+       [&](const readback::ExecutedMove& move) { states.add(move); },
+       flow::graphics_blank(*check.gear.process, *check.job.setup), !check.request.stock_files.empty()},
+      {}, check.milling->check(), check.clock);
   if (!proof) return proof.error();
   check.proof = std::move(proof.value());
   check.states = states.finish(check.proof->read);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -203,6 +204,11 @@ Status follow_whole(const ProgramText& program, GearCheck& gear, ProgramProof& p
   }
   if (proof.read.copies.copies) return Ok{};
   keep_first_teeth(proof.read);  // what else there is to say of them is in the motions
+  const auto tolerance = program.job.verify.all_teeth ? std::nullopt : std::optional(copy_tolerance(program.job));
+  clock.run("compare the teeth", [&] {
+    proof.other_teeth = cuts_of_other_teeth(proof.motions, gear.teeth(), tolerance,
+                                            [&](const path::ToolMotion& m) { return gear.may_cut(m); });
+  });
   if (program.job.verify.all_teeth) return Ok{};
   // Teeth that are written out one by one: what is the first tooth again, turned, need not be proven again.
   clock.run("compare the teeth", [&] {
@@ -219,8 +225,8 @@ class TeethOneByOne {
       : program_(program),
         gear_(gear),
         proof_(proof),
-        teeth_(gear.teeth(), program.job.verify.all_teeth ? std::nullopt : std::optional(copy_tolerance(program.job))) {
-  }
+        teeth_(gear.teeth(), program.job.verify.all_teeth ? std::nullopt : std::optional(copy_tolerance(program.job)),
+               [&gear](const path::ToolMotion& m) { return gear.may_cut(m); }) {}
 
   /// Every tooth is seen, its rapids against the part and its cuts beside the first one.
   Status see(std::vector<std::string>& rapids) {
@@ -236,6 +242,7 @@ class TeethOneByOne {
     }
     kept_.clear();
     proof_.stated = teeth_.stated();
+    proof_.other_teeth = teeth_.other_teeth();
     proof_.likes_follow = teeth_.any_like();
     return Ok{};
   }
@@ -316,6 +323,43 @@ void judge_feeds_between(const readback::ReadBack& read, std::vector<std::string
       }
 }
 
+/// Teeth that an operation does not cut at all, in one reason.
+void judge_uncut(const ProgramProof& proof, int operation, std::vector<std::string>& reasons) {
+  constexpr std::size_t kNamed = 8;
+  std::string teeth;
+  std::size_t count = 0;
+  const ToothCut* any = nullptr;
+  for (const ToothCut& other : proof.other_teeth) {
+    if (other.operation != operation || !other.cuts_nothing()) continue;
+    any = &other;
+    if (++count <= kNamed) teeth += fmt::format("{}{}", count > 1 ? ", " : "", other.tooth);
+  }
+  if (!any) return;
+  if (count > kNamed) teeth += fmt::format(" and {} more", count - kNamed);
+  reasons.push_back(
+      fmt::format("operation {} does not cut tooth {}: no cut stands there like that of line {} in tooth {}", operation,
+                  teeth, any->again.missing->line, any->first_tooth));
+}
+
+/// Every operation cuts every tooth; where nobody measures what it leaves, with every cut of its first one.
+void judge_cuts_again(const ProgramProof& proof, const ProgramText& program, const GearCheck& gear,
+                      std::vector<std::string>& reasons) {
+  std::set<int> there;
+  for (const readback::OperationTrace& trace : proof.read.operations) there.insert(trace.operation);
+  const int first = program.stock_is_stated && !there.empty() ? *there.begin() : 0;
+  for (int n = first; n < int(program.job.operations.size()); ++n) {
+    if (!there.contains(n)) reasons.push_back(fmt::format("operation {} of the job is not in the program", n));
+    judge_uncut(proof, n, reasons);
+  }
+  std::map<int, std::vector<const ToothCut*>> missing;  // by operation
+  for (const ToothCut& other : proof.other_teeth)
+    if (other.again.missing && !other.cuts_nothing() && !gear.measures(other.operation))
+      missing[other.operation].push_back(&other);
+  for (const auto& [operation, teeth] : missing)
+    reasons.push_back(fmt::format("operation {}, {}{}", operation, told(*teeth.front()),
+                                  teeth.size() > 1 ? fmt::format(" ({} teeth so)", teeth.size()) : ""));
+}
+
 void compare(ProgramProof& proof, const AskedPaths& asked, const GearCheck& gear, app::StageClock& clock) {
   const double mm = asked.mm + 2 * gear.motion_tolerance(), rad = asked.rad + 2 * gear.motion_tolerance();
   const readback::ClComparison c = clock.run(
@@ -381,6 +425,7 @@ Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths&
     if (const auto clear = gear.rapids_clear(trace, proof.control); !clear)
       proof.reasons.push_back(clear.error().message);
   judge_feeds_between(proof.read, proof.reasons);
+  judge_cuts_again(proof, program, gear, proof.reasons);
   judge_travels(ranges_of(proof.read, program.machine), proof.reasons);
   gear.judge(proof, clock);
   proof.each_tooth = nullptr;

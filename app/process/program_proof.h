@@ -35,6 +35,7 @@ struct ProgramText {
   bodies::MovesJudge* moves = nullptr;  ///< sees every move that is executed; null: no bodies are stated
   std::function<void(const readback::ExecutedMove&)> watch = {};  ///< sees them too; may be empty
   std::optional<joints::GraphicsBlank> blank = std::nullopt;      ///< that the graphics of the control should have
+  bool stock_is_stated = false;  ///< a mesh is: operations ahead of the first one of the text may be done
 };
 
 /// The paths that a program must meet, and how far it may be off them: mm, rad. Without paths (a program that somebody
@@ -66,6 +67,7 @@ struct ProgramProof {
   std::size_t tooth_motions = 0;                     ///< that each_tooth gives, at most
   bool likes_follow = false;                         ///< some of them are like others
   Stated stated;                                     ///< of all that is to be proven
+  std::vector<ToothCut> other_teeth;                 ///< later teeth that are no copies of their operation's first one
   std::optional<readback::ClComparison> comparison;  ///< only where there is a path to compare with
   double path_tolerance_mm = 0;                      ///< of that comparison
   readback::ConditionsFound conditions;              ///< feeds, speeds, tools, coolant
@@ -94,12 +96,17 @@ class GearCheck {
   /// Do the rapids of this trace keep the whole tool clear of part and blank at every moment? A refusal names the line.
   [[nodiscard]] virtual Status rapids_clear(const readback::OperationTrace& trace,
                                             const readback::NcControl& control) const = 0;
+  /// Could this feed motion remove anything of the blank? The cuts that could must be made again on every tooth.
+  [[nodiscard]] virtual bool may_cut(const path::ToolMotion& motion) const = 0;
+  /// Does judge() measure on every tooth what this operation leaves, where a tooth is cut otherwise than the first one?
+  /// Of other operations every cut must be made again: the next one would meet more than it was planned for.
+  [[nodiscard]] virtual bool measures(int operation) const = 0;
   /// Sees the program as it was read ahead of judge(), all teeth that were kept, before copies among them are left out:
   /// stretch by stretch, each of one operation, the moves with the motions made of them.
   virtual void meet(const readback::OperationTrace& trace, std::span<const path::ToolMotion> motions,
                     const readback::NcControl& control) = 0;
-  /// Gouge, clearance, material left: what the motions of `program` do to the part, in stages of the gear's own, goes
-  /// into the second half of `program`. What is not within its limit joins `program.reasons`.
+  /// Gouge, clearance, material left on every tooth: what the motions of `program` do to the part, in stages of the
+  /// gear's own, goes into the second half of `program`. What is not within its limit joins `program.reasons`.
   virtual void judge(ProgramProof& program, app::StageClock& clock) = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "app/process/tooth_copies.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "cam/proof/beside.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::process {
@@ -24,16 +26,6 @@ using Block = MotionBlock;
 
 constexpr double kReach =
     1000;  // mm: the axis also moves shank and holder, less than a metre away; a copy is near there
-
-constexpr double kLike = 0.1;        // mm, the same way: motions farther apart tell little of each other
-constexpr double kLever = 10;        // mm: of an axis where its turn is weighed against a way of the tip
-constexpr std::size_t kAhead = 48;   // motions of the first tooth among which the next place is looked for,
-constexpr std::size_t kSettled = 4;  // and how many behind the best one decide,
-constexpr double kThere = 0.003;     // mm: one where it is this near; passes may come by again
-constexpr int kSearches = 64;        // of the whole first tooth, where a tooth has gone elsewhere
-// Axes are blended in a straight line and then made unit vectors again. Where none turns by more than the first of
-// these within a motion, that widens what lies between two of them by no more than the second.
-constexpr double kWideTurn = 0.05, kNormalised = 1.001;
 
 using ToothOfOperation = std::pair<int, int>;  // operation, tooth
 using Blocks = std::map<ToothOfOperation, std::vector<Block>>;
@@ -148,115 +140,68 @@ void stand_for(std::span<path::ToolMotion> motions, const Block& original, const
   }
 }
 
-/// A place of the straight line between two poses.
-Pose between(const Pose& a, const Pose& b, double t) {
-  return {(1 - t) * a.tip + t * b.tip, (1 - t) * a.axis + t * b.axis};
+std::vector<path::ToolMotion> motions_of(std::span<const path::ToolMotion> motions, const std::vector<Block>& blocks) {
+  std::vector<path::ToolMotion> out;
+  for (const Block& block : blocks)
+    out.insert(out.end(), motions.begin() + std::ptrdiff_t(block.first), motions.begin() + std::ptrdiff_t(block.last));
+  return out;
 }
-double apart_squared(const Pose& a, const Pose& b) {
-  return (a.tip - b.tip).squaredNorm() + kLever * kLever * (a.axis - b.axis).squaredNorm();
+
+}  // namespace
+
+namespace {
+
+/// By which a tooth is known: a tool that is changed ahead of it comes from anywhere. Null: it cuts nothing.
+const path::ToolMotion* first_cut(std::span<const path::ToolMotion> motions) {
+  const auto cut = std::find_if(motions.begin(), motions.end(), [](const auto& m) { return !m.rapid; });
+  return cut == motions.end() ? nullptr : &*cut;
 }
-/// Share of the line between two poses that is nearest to another.
-double share(const Pose& a, const Pose& b, const Pose& x) {
-  const double square = apart_squared(a, b);
-  if (square == 0) return 0;
-  const double along = (b.tip - a.tip).dot(x.tip - a.tip) + kLever * kLever * (b.axis - a.axis).dot(x.axis - a.axis);
-  return std::clamp(along / square, 0.0, 1.0);
+
+}  // namespace
+
+std::string told(const ToothCut& other) {
+  const auto& missing = *other.again.missing;
+  return fmt::format(
+      "tooth {}: the cut of line {}, tooth {}, is not made again behind line {}, the nearest one is {:.3f} mm away",
+      other.tooth, missing.line, other.first_tooth, missing.behind_line, missing.off_mm);
 }
-float rounded_up(double x) { return std::nextafter(float(std::max(x, 0.0)), INFINITY); }
 
-/// Follows the first tooth beside another one, motion by motion. Wherever either is cut, the nearest place of the other
-/// is taken; from one such place to the next both go straight.
-class Beside {
- public:
-  /// @param path  cutting motions of the first tooth, by their number, in order; @param turn  back to it
-  Beside(std::span<const path::ToolMotion> motions, const std::vector<std::uint32_t>& path, double turn)
-      : motions_(motions), path_(path), c_(std::cos(turn)), s_(std::sin(turn)) {}
-
-  /// The next motion of the other tooth, number k of its list; nothing where it is not like the first one.
-  std::optional<proof::LikeMotion> next(const path::ToolMotion& m, std::uint32_t k) {
-    const Pose a{back(m.tip_from), back(m.axis_from)}, b{back(m.tip_to), back(m.axis_to)};
-    const std::size_t from = nearest(a, at_, kAhead), to = nearest(b, from, kAhead);
-    tip_ = axis_ = 0;
-    double stray = INFINITY, turn = INFINITY, t = 0;
-    bool wide = turns_wide(m);
-    for (std::size_t n = from; n <= to; ++n) {
-      const path::ToolMotion& own = motions_[path_[n]];
-      const Pose start{own.tip_from, own.axis_from}, end{own.tip_to, own.axis_to};
-      if (n == from) {
-        note(a, between(start, end, share(start, end, a)));
-      } else {  // where the motion before this one ends and this one begins
-        const path::ToolMotion& before = motions_[path_[n - 1]];
-        t = std::max(t, share(a, b, start));
-        note(between(a, b, t), start);
-        note(between(a, b, t), {before.tip_to, before.axis_to});
-      }
-      if (n == to) note(b, between(start, end, share(start, end, b)));
-      stray = std::min(stray, own.deviation_mm);
-      turn = std::min(turn, own.axis_deviation);
-      wide = wide || turns_wide(own);
-    }
-    const bool like = !wide && tip_ + kReach * axis_ <= kLike;
-    // Where one search found nothing near the next motions are likely to be as far: turns of a link are many motions.
-    if (like || k != number_ + 1) wait_ = next_wait_ = 0;
-    number_ = k;
-    if (like) {
-      at_ = to;
-    } else if (searches_ > 0 && wait_-- == 0) {
-      at_ = nearest(b, 0, path_.size()), --searches_;
-      wait_ = next_wait_;
-      next_wait_ = 2 * next_wait_ + 1;
-    }
-    if (!like) return std::nullopt;
-    return proof::LikeMotion{k, path_[from], path_[to] + 1, rounded_up(tip_ + m.deviation_mm - stray),
-                             rounded_up(kNormalised * axis_ + m.axis_deviation - turn)};
-  }
-
- private:
-  [[nodiscard]] static bool turns_wide(const path::ToolMotion& m) {
-    return (m.axis_to - m.axis_from).norm() > kWideTurn;
-  }
-  void note(const Pose& a, const Pose& b) {
-    tip_ = std::max(tip_, (a.tip - b.tip).norm());
-    axis_ = std::max(axis_, (a.axis - b.axis).norm());
-  }
-  /// The motion of the path that comes nearest, of `count` from `first` on.
-  [[nodiscard]] std::size_t nearest(const Pose& x, std::size_t first, std::size_t count) const {
-    std::size_t best = first;
-    double least = INFINITY;
-    for (std::size_t n = first; n < std::min(first + count, path_.size()); ++n) {
-      const path::ToolMotion& own = motions_[path_[n]];
-      const Pose a{own.tip_from, own.axis_from}, b{own.tip_to, own.axis_to};
-      const double off = apart_squared(x, between(a, b, share(a, b, x)));
-      if (off < least) {
-        least = off;
-        best = n;
-      } else if (least < kThere * kThere || (n > best + kSettled && least < kLike * kLike)) {
-        break;
-      }
-    }
-    return best;
-  }
-  [[nodiscard]] Vec3 back(const Vec3& v) const { return {c_ * v.x() - s_ * v.y(), s_ * v.x() + c_ * v.y(), v.z()}; }
-
-  std::span<const path::ToolMotion> motions_;
-  const std::vector<std::uint32_t>& path_;
-  double c_, s_;
-  std::size_t at_ = 0;            ///< of the path: where the last motion ended
-  int searches_ = kSearches;      ///< that are left
-  int wait_ = 0, next_wait_ = 0;  ///< motions until the next of them, and from there to the one after
-  std::uint32_t number_ = 0;      ///< of the last motion
-  double tip_ = 0, axis_ = 0;     ///< how far the places taken are apart, at most
-};
-
-/// Of every operation the first tooth that it cuts.
-std::map<int, int> first_teeth(const std::vector<path::ToolMotion>& motions) {
+std::map<int, int> first_teeth(std::span<const path::ToolMotion> motions) {
   std::map<int, int> first;
   for (const path::ToolMotion& m : motions)
     if (!m.rapid) first.emplace(m.operation, m.tooth);
   return first;
 }
 
-}  // namespace
+std::vector<ToothCut> cuts_of_other_teeth(const std::vector<path::ToolMotion>& motions, int teeth,
+                                          std::optional<double> tolerance_mm,
+                                          const proof::FirstTooth::MayCut& may_cut) {
+  const Blocks cuts = cutting_blocks(motions);
+  std::vector<ToothCut> others;
+  std::map<int, proof::FirstTooth> firsts;  // of operations
+  for (const auto& [operation, reference] : first_teeth(motions)) {
+    firsts.try_emplace(operation, motions_of(motions, cuts.at({operation, reference})), may_cut);
+    for (int tooth = 0; tooth < teeth; ++tooth)
+      if (tooth != reference) others.push_back({operation, tooth, reference, {}});
+  }
+  std::vector<char> copies(others.size(), 0);
+  tbb::parallel_for(std::size_t(0), others.size(), [&](std::size_t n) {
+    ToothCut& other = others[n];
+    const double turn = back_to_first(other.tooth, other.first_tooth, teeth);
+    const auto own = cuts.find({other.operation, other.tooth});
+    copies[n] = char(
+        tolerance_mm && own != cuts.end() &&
+        shift_of({motions, motions, turn}, cuts.at({other.operation, other.first_tooth}), own->second, *tolerance_mm));
+    if (copies[n] != 0) return;
+    const auto later = own == cuts.end() ? std::vector<path::ToolMotion>() : motions_of(motions, own->second);
+    other.again = proof::cuts_again(firsts.at(other.operation), later, -turn);
+  });
+  std::size_t kept = 0;
+  for (std::size_t n = 0; n < others.size(); ++n)
+    if (copies[n] == 0) others[kept++] = others[n];
+  others.resize(kept);
+  return others;
+}
 
 std::vector<proof::LikeMotion> like_motions(const std::vector<path::ToolMotion>& motions, int teeth) {
   std::map<ToothOfOperation, std::vector<std::uint32_t>> cuts;
@@ -270,7 +215,7 @@ std::vector<proof::LikeMotion> like_motions(const std::vector<path::ToolMotion>&
   tbb::parallel_for(std::size_t(0), others.size(), [&](std::size_t n) {
     const auto [operation, tooth] = others[n];
     const int reference = first_tooth.at(operation);
-    Beside beside(motions, cuts.at({operation, reference}), back_to_first(tooth, reference, teeth));
+    proof::Beside beside(motions, cuts.at({operation, reference}), back_to_first(tooth, reference, teeth));
     for (const std::uint32_t k : cuts.at(others[n]))
       if (const auto like = beside.next(motions[k], k)) found[n].push_back(*like);
   });
@@ -335,10 +280,11 @@ struct ToothByTooth::First {
 struct ToothByTooth::Later {
   bool copy = false, like = false;
   Stated stated;
+  proof::CutsAgain again;
 };
 
-ToothByTooth::ToothByTooth(int teeth, std::optional<double> copy_tolerance_mm)
-    : teeth_(teeth), tolerance_mm_(copy_tolerance_mm) {}
+ToothByTooth::ToothByTooth(int teeth, std::optional<double> copy_tolerance_mm, proof::FirstTooth::MayCut may_cut)
+    : teeth_(teeth), tolerance_mm_(copy_tolerance_mm), may_cut_(std::move(may_cut)) {}
 ToothByTooth::~ToothByTooth() = default;
 
 void ToothByTooth::first(std::span<const path::ToolMotion> motions) {
@@ -353,6 +299,7 @@ void ToothByTooth::first(std::span<const path::ToolMotion> motions) {
     first.cuts.push_back(std::uint32_t(firsts_.size() - 1));
     add_cut(first.blocks, firsts_, firsts_.size() - 1);
   }
+  first_teeth_.try_emplace(motions.front().operation, std::vector(motions.begin(), motions.end()), may_cut_);
   first.copies.resize(first.blocks.size());
   operations_.emplace(motions.front().operation, std::move(first));
 }
@@ -363,24 +310,28 @@ ToothByTooth::Seen ToothByTooth::seen(std::span<const path::ToolMotion> motions)
   for (std::size_t k = 0; k < motions.size(); ++k)
     if (!motions[k].rapid) add_cut(blocks, motions, k);
   if (blocks.empty()) return out;
-  out.operation = motions.front().operation;
-  out.tooth = motions.front().tooth;
+  const path::ToolMotion& cut = *first_cut(motions);
+  out.operation = cut.operation;
+  out.tooth = cut.tooth;
   out.stated = stated_deviation(motions);
   const First& first = operations_.at(out.operation);
-  if (!tolerance_mm_) return out;
-  Beside beside(firsts_, first.cuts, back_to_first(out.tooth, first.tooth, teeth_));
-  for (std::size_t k = 0; k < motions.size() && !out.like; ++k)
-    out.like = !motions[k].rapid && beside.next(motions[k], std::uint32_t(k));
-  const auto shift =
-      shift_of({firsts_, motions, back_to_first(out.tooth, first.tooth, teeth_)}, first.blocks, blocks, *tolerance_mm_);
-  if (!shift) return out;
-  for (const Block& block : blocks) out.blocks.push_back(farther(most_of(motions, block), *shift));
+  const double turn = back_to_first(out.tooth, first.tooth, teeth_);
+  if (tolerance_mm_) {
+    proof::Beside beside(firsts_, first.cuts, turn);
+    for (std::size_t k = 0; k < motions.size() && !out.like; ++k)
+      out.like = !motions[k].rapid && beside.next(motions[k], std::uint32_t(k));
+    if (const auto shift = shift_of({firsts_, motions, turn}, first.blocks, blocks, *tolerance_mm_)) {
+      for (const Block& block : blocks) out.blocks.push_back(farther(most_of(motions, block), *shift));
+      return out;
+    }
+  }
+  out.again = proof::cuts_again(first_teeth_.at(out.operation), motions, -turn);
   return out;
 }
 
 void ToothByTooth::note(const Seen& seen) {
   if (seen.operation < 0) return;
-  later_[{seen.operation, seen.tooth}] = {!seen.blocks.empty(), seen.like, seen.stated};
+  later_[{seen.operation, seen.tooth}] = {!seen.blocks.empty(), seen.like, seen.stated, seen.again};
   if (copies_ && !copies_->contains(seen.tooth)) return;
   std::vector<Stated>& copies = operations_.at(seen.operation).copies;
   for (std::size_t k = 0; k < seen.blocks.size(); ++k) copies[k].add(seen.blocks[k]);
@@ -401,6 +352,19 @@ bool ToothByTooth::settle() {
     first.copies.assign(first.blocks.size(), {});
   }
   return settled;
+}
+
+std::vector<ToothCut> ToothByTooth::other_teeth() const {
+  std::vector<ToothCut> out;
+  for (const auto& [operation, first] : operations_)
+    for (int tooth = 0; tooth < teeth_; ++tooth) {
+      if (tooth == first.tooth) continue;
+      const auto later = later_.find({operation, tooth});
+      if (later == later_.end())
+        out.push_back({operation, tooth, first.tooth, proof::cuts_again(first_teeth_.at(operation), {}, 0)});
+      else if (!later->second.copy) out.push_back({operation, tooth, first.tooth, later->second.again});
+    }
+  return out;
 }
 
 Stated ToothByTooth::stated() const {
@@ -424,9 +388,10 @@ bool ToothByTooth::left_out(int tooth) const { return copies_ && copies_->contai
 
 std::vector<proof::LikeMotion> ToothByTooth::likes(std::span<const path::ToolMotion> motions) const {
   std::vector<proof::LikeMotion> found;
-  if (!tolerance_mm_ || motions.empty()) return found;
-  const First& first = operations_.at(motions.front().operation);
-  Beside beside(firsts_, first.cuts, back_to_first(motions.front().tooth, first.tooth, teeth_));
+  const path::ToolMotion* cut = first_cut(motions);
+  if (!tolerance_mm_ || !cut) return found;
+  const First& first = operations_.at(cut->operation);
+  proof::Beside beside(firsts_, first.cuts, back_to_first(cut->tooth, first.tooth, teeth_));
   for (std::size_t k = 0; k < motions.size(); ++k)
     if (!motions[k].rapid)
       if (const auto like = beside.next(motions[k], std::uint32_t(k))) found.push_back(*like);

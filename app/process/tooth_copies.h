@@ -7,10 +7,12 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "cam/path/tool_motion.h"
+#include "cam/proof/cuts_again.h"
 #include "cam/proof/like_motion.h"
 
 namespace toothpath::process {
@@ -28,6 +30,27 @@ namespace toothpath::process {
 /// @param motions, teeth  as above
 [[nodiscard]] std::vector<proof::LikeMotion> like_motions(const std::vector<path::ToolMotion>& motions, int teeth);
 
+/// A later tooth of an operation that is no copy of the first one: how it makes the cuts of that again. A tooth that
+/// the operation does not cut at all has all of them missing, behind no line.
+struct ToothCut {
+  int operation = 0, tooth = 0;
+  int first_tooth = 0;  ///< of the operation
+  proof::CutsAgain again;
+  [[nodiscard]] bool cuts_nothing() const { return again.missing && again.missing->behind_line == 0; }
+};
+
+/// Of one with a missing cut: "tooth 3: the cut of line 17, tooth 0, is not made again behind line 345 ..".
+[[nodiscard]] std::string told(const ToothCut& other);
+
+/// Every tooth 0 .. teeth - 1 that is no copy of its operation's first one, by operation and tooth.
+/// @param motions, teeth, tolerance_mm  as of without_copies(), ahead of it; no tolerance: no tooth is a copy
+[[nodiscard]] std::vector<ToothCut> cuts_of_other_teeth(const std::vector<path::ToolMotion>& motions, int teeth,
+                                                        std::optional<double> tolerance_mm,
+                                                        const proof::FirstTooth::MayCut& may_cut);
+
+/// Of every operation the first tooth that it cuts.
+[[nodiscard]] std::map<int, int> first_teeth(std::span<const path::ToolMotion> motions);
+
 /// Largest deviations that motions state while cutting.
 struct Stated {
   double tip_mm = 0, axis_rad = 0;
@@ -43,7 +66,7 @@ struct Stated {
 class ToothByTooth {
  public:
   /// @param copy_tolerance_mm  none: all teeth are proven by themselves
-  ToothByTooth(int teeth, std::optional<double> copy_tolerance_mm);
+  ToothByTooth(int teeth, std::optional<double> copy_tolerance_mm, proof::FirstTooth::MayCut may_cut);
   ToothByTooth(const ToothByTooth&) = delete;
   ToothByTooth& operator=(const ToothByTooth&) = delete;
   ~ToothByTooth();
@@ -56,6 +79,7 @@ class ToothByTooth {
     Stated stated;
     bool like = false;           ///< some motion is like the first tooth
     std::vector<Stated> blocks;  ///< a copy: how far each of its blocks may be from the first tooth's
+    proof::CutsAgain again;      ///< else
   };
   [[nodiscard]] Seen seen(std::span<const path::ToolMotion> motions) const;
   void note(const Seen& seen);
@@ -67,6 +91,8 @@ class ToothByTooth {
   [[nodiscard]] std::span<const path::ToolMotion> first_of(int operation) const;
   /// The cuts of this tooth are those of the first one in every operation.
   [[nodiscard]] bool left_out(int tooth) const;
+  /// As cuts_of_other_teeth() says it of the whole program.
+  [[nodiscard]] std::vector<ToothCut> other_teeth() const;
   /// Of all that is not left out.
   [[nodiscard]] Stated stated() const;
   /// Some of it is like a first tooth.
@@ -79,6 +105,8 @@ class ToothByTooth {
   struct Later;
   int teeth_;
   std::optional<double> tolerance_mm_;
+  proof::FirstTooth::MayCut may_cut_;
+  std::map<int, proof::FirstTooth> first_teeth_;  ///< of the operations, with what each of them may cut
   std::vector<path::ToolMotion> firsts_;
   std::map<int, First> operations_;
   std::map<std::pair<int, int>, Later> later_;  ///< by operation and tooth

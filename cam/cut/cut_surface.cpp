@@ -161,6 +161,8 @@ class Meter {
     g.excess_um.assign(paths_.size(), std::vector<float>(count));
     for (std::size_t k = 0; k < count; ++k)
       for (std::size_t n = 0; n < excess[k].size(); ++n) g.excess_um[n][k] = excess[k][n];
+    for (std::size_t k = 0; k < count && !paths_.empty(); ++k)
+      if (g.normals[k] != Vec3::Zero()) watch(g.points[k], region_of(piece), double(g.excess_um.back()[k]) / 1000);
     for (std::size_t k = 0; k < count; ++k)
       if (left[k]) note_unreached(*left[k], zone, double(g.excess_um.back()[k]) / 1000);
     out_.solve_residual_mm = std::max(out_.solve_residual_mm, *std::max_element(residual.begin(), residual.end()));
@@ -179,6 +181,8 @@ class Meter {
       for (const auto& q : points) {
         const double x = q.left + operations_.back().allowance_mm;
         const path::Region region = region_of(q.piece);
+        if (nearly(region, x))
+          if (const auto s = places.at(q.sigma, r)) watch(s->contact.p, region, x);
         if (x <= std::min(line_max_[region], unreached_limit(region))) continue;
         const auto s = places.at(q.sigma, r);
         if (!s) continue;
@@ -233,10 +237,27 @@ class Meter {
       const auto s = places.at(sigma, r);
       if (!s || !reachable(s->contact, region)) continue;  // a corner that was left
       line_max_[region] = std::max(line_max_[region], height + operations_.back().allowance_mm);
+      watch_crest(places, r, *(top - 1), *(top + 1), region, height + operations_.back().allowance_mm);
       const bool on_flank = is_flank(a.piece) && a.piece == b.piece;
       if (on_flank || by_side(path::Region::flank)) cusps_.push_back({height - valley, wanted});
       if (!on_flank) fillet_cusp_ = std::max(fillet_cusp_, height - valley);
     }
+  }
+
+  /// Is it missing little to what may stand?
+  [[nodiscard]] bool nearly(path::Region region, double height) const {
+    const double limit = unreached_limit(region);
+    return o_.watch_mm > 0 && height <= limit && height + o_.watch_mm > limit;
+  }
+  void watch(const Vec3& p, path::Region region, double height) {
+    if (nearly(region, height)) out_.watched.push_back({p, unreached_limit(region)});
+  }
+  /// On another tooth the crest is somewhere else between the same two places.
+  void watch_crest(const ZonePlaces& places, double r, const LinePoint& before, const LinePoint& after,
+                   path::Region region, double height) {
+    for (int k = 0; k <= 2 * kCrestSteps && nearly(region, height); ++k)
+      if (const auto s = places.at(before.sigma + (after.sigma - before.sigma) * k / (2 * kCrestSteps), r))
+        watch(s->contact.p, region, height);
   }
 
   /// Place and height of the one crest between two neighbours of the highest sample: two arcs meet there, and a sample

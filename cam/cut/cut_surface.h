@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cam/analytic/gear_distance.h"
+#include "cam/cut/left_places.h"
 #include "cam/path/operation.h"
 #include "cam/path/tool_motion.h"
 #include "cam/proof/verification.h"
@@ -17,6 +18,7 @@ struct CutSurfaceOptions {
   int flank_rows = 40, fillet_rows = 14, root_rows = 7, columns = 33;
   int scallop_lines = 9;  ///< lines across each flank on which cusps are counted
   double cap_mm = 0;      ///< excess above this is reported as this; 0: one module
+  double watch_mm = 0;    ///< places are kept where no more than this is missing to what may stand; 0: none
 };
 
 /// The cut surface of tooth space 0.
@@ -30,7 +32,8 @@ struct CutSurface {
   path::ByRegion<double> finished_in_mm;
   double solve_residual_mm =
       0;  ///< greatest difference between a radius and the distance from a centre that far above the grid
-  proof::ScallopResult scallop;  ///< cusps of the last operation; requested 0: it has none
+  std::vector<LeftPlace> watched;  ///< places on which no more stands than may, but nearly as much
+  proof::ScallopResult scallop;    ///< cusps of the last operation; requested 0: it has none
 };
 
 /// `motions`: those of tooth 0 are used. Excess at a point p: the least, over all moves so far, of (distance from p to

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -46,7 +47,7 @@ std::set<std::size_t> least_proven(const std::vector<FingerCheckResult>& results
 }  // namespace
 
 FingerCheckResult verify_teeth(const FingerGougeCheck& check, std::span<const path::ToolMotion> motions,
-                               std::span<const proof::LikeMotion> likes) {
+                               std::span<const proof::LikeMotion> likes, const std::map<int, double>& away) {
   std::map<int, std::size_t> place;  // tooth that is cut -> its slot, in the order of the teeth
   for (const path::ToolMotion& m : motions)
     if (!m.rapid) place.emplace(m.tooth, 0);
@@ -80,7 +81,16 @@ FingerCheckResult verify_teeth(const FingerGougeCheck& check, std::span<const pa
     tooth.looked_at = tooth.likes == 0 || double(tooth.unlike) > kMostUnlike * double(tooth.likes);
     results[k] = tooth.looked_at ? check.verify(tooth.motions) : check.bounds(tooth.motions, tooth.own);
   });
-  for (const std::size_t k : least_proven(results))
+  std::set<std::size_t> look = least_proven(results);
+  RidgeResult ridge;  // of the teeth that were looked at, the first one among them
+  for (const FingerCheckResult& r : results)
+    if (r.ridge.points > 0 && r.ridge.reached_mm >= ridge.reached_mm) ridge = r.ridge;
+  for (const auto& [tooth, mm] : away) {
+    const bool higher = ridge.requested_mm > 0 && ridge.reached_mm + mm > ridge.requested_mm;
+    if (const auto found = place.find(tooth); found != place.end() && (higher || std::isinf(mm)))
+      look.insert(found->second);
+  }
+  for (const std::size_t k : look)
     if (!teeth[k].looked_at) results[k] = check.verify(teeth[k].motions);
   FingerCheckResult all = std::move(results.front());
   for (std::size_t k = 1; k < slots; ++k) take_worse(all, std::move(results[k]));

@@ -1,6 +1,7 @@
 // The check of a program that cuts several tooth spaces of a bevel gear, each measured on its own.
 #pragma once
 
+#include <map>
 #include <span>
 
 #include "cam/finger/check.h"
@@ -15,7 +16,11 @@ namespace toothpath::finger {
 ///               motions are nearly all like others is looked at where it is the one that is proven least, in depth,
 ///               gap or material left, and along the motions that are like none: what is found elsewhere is away from
 ///               this by no more than the likes are.
+/// @param away   of later teeth that are no copies of the first one: no cut of that is farther from one of theirs, mm;
+///               infinite where one is missing. Where the ridges of the first tooth and this way may stand higher than
+///               they may, a tooth is looked at like the first one.
 [[nodiscard]] FingerCheckResult verify_teeth(const FingerGougeCheck& check, std::span<const path::ToolMotion> motions,
-                                             std::span<const proof::LikeMotion> likes = {});
+                                             std::span<const proof::LikeMotion> likes = {},
+                                             const std::map<int, double>& away = {});
 
 }  // namespace toothpath::finger

@@ -126,6 +126,27 @@ TEST(ToothCopies, WhatDiffersAnywhereIsKeptWithAllItsOperations) {
             both);
 }
 
+// A tooth that is no copy cuts all that the first one does, or it is told what it lacks.
+TEST(ToothCopies, WhatAToothLacksIsTold) {
+  const auto found = [](const std::vector<path::ToolMotion>& motions) {
+    return process::cuts_of_other_teeth(motions, kTeeth, kTolerance, [](const auto&) { return true; });
+  };
+  EXPECT_TRUE(found(program(2, 3)).empty());
+  std::vector<path::ToolMotion> motions;
+  for (const auto& m : program(2, 3))
+    if (m.tooth != 4 || (m.operation == 0 && m.line % 1000 != 3)) motions.push_back(m);
+  const auto others = found(motions);
+  ASSERT_EQ(others.size(), 2U);
+  EXPECT_EQ(others[0].tooth, 4);
+  EXPECT_FALSE(others[0].cuts_nothing());
+  EXPECT_EQ(others[0].again.missing->line, 3);
+  EXPECT_EQ(others[0].again.missing->behind_line, 4002);
+  EXPECT_EQ(told(others[0]).find("tooth 4: the cut of line 3, tooth 0, is not made again behind line 4002"), 0U)
+      << told(others[0]);
+  EXPECT_EQ(others[1].operation, 1);
+  EXPECT_TRUE(others[1].cuts_nothing());
+}
+
 TEST(ToothCopies, RapidsAreKept) {
   auto motions = program(1, 2);
   for (auto& m : motions)
@@ -225,6 +246,7 @@ struct Kept {
   std::vector<path::ToolMotion> motions;
   std::vector<proof::LikeMotion> likes;
   process::Stated stated;
+  std::vector<process::ToothCut> others;
   int times = 0;  ///< that all teeth were seen
 };
 Kept one_by_one(const std::vector<path::ToolMotion>& motions) {
@@ -238,7 +260,7 @@ Kept one_by_one(const std::vector<path::ToolMotion>& motions) {
   std::set<int> begun;
   std::vector<bool> first;
   for (const auto& stretch : stretches) first.push_back(begun.insert(stretch.front().operation).second);
-  process::ToothByTooth teeth(kTeeth, kTolerance);
+  process::ToothByTooth teeth(kTeeth, kTolerance, [](const auto&) { return true; });
   Kept kept;
   do {
     for (std::size_t n = 0; n < stretches.size(); ++n)
@@ -267,6 +289,7 @@ Kept one_by_one(const std::vector<path::ToolMotion>& motions) {
     kept.motions.insert(kept.motions.end(), stretch.begin(), stretch.end());
   }
   kept.stated = teeth.stated();
+  kept.others = teeth.other_teeth();
   return kept;
 }
 
@@ -285,6 +308,18 @@ void expect_as_a_whole(const std::vector<path::ToolMotion>& motions, int times, 
   const auto stated = process::stated_deviation(whole);
   EXPECT_EQ(kept.stated.tip_mm, stated.tip_mm) << what;
   EXPECT_EQ(kept.stated.axis_rad, stated.axis_rad) << what;
+  const auto others = process::cuts_of_other_teeth(motions, kTeeth, kTolerance, [](const auto&) { return true; });
+  ASSERT_EQ(kept.others.size(), others.size()) << what;
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    ASSERT_EQ(kept.others[k].operation, others[k].operation) << what;
+    ASSERT_EQ(kept.others[k].tooth, others[k].tooth) << what;
+    ASSERT_EQ(kept.others[k].cuts_nothing(), others[k].cuts_nothing()) << what;
+    ASSERT_EQ(kept.others[k].again.away(10), others[k].again.away(10)) << what;
+    ASSERT_EQ(kept.others[k].again.missing.has_value(), others[k].again.missing.has_value()) << what;
+    if (others[k].again.missing) {
+      ASSERT_EQ(kept.others[k].again.missing->line, others[k].again.missing->line) << what;
+    }
+  }
   const auto likes = process::like_motions(whole, kTeeth);
   ASSERT_EQ(kept.likes.size(), likes.size()) << what;
   for (std::size_t k = 0; k < likes.size(); ++k) {

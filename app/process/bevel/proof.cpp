@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -115,9 +117,22 @@ report::Finding tilt_of(const bevel_gear::BevelGear& gear, const MovingAxes& mov
   return finding;
 }
 
-bool finishes(const job::Job& job) {
-  return std::any_of(job.operations.begin(), job.operations.end(),
-                     [](const path::MillingOperation& o) { return o.type == path::OperationType::finger_finishing; });
+/// The last operation that finishes, by index.
+std::optional<std::size_t> finisher(const job::Job& job) {
+  for (std::size_t n = job.operations.size(); n-- > 0;)
+    if (job.operations[n].type == path::OperationType::finger_finishing) return n;
+  return std::nullopt;
+}
+
+/// Teeth that are cut otherwise than the first one: how far away, mm.
+std::map<int, double> unlike_teeth(const process::ProgramProof& program, const job::Job& job) {
+  std::map<int, double> away;
+  for (const process::ToothCut& other : program.other_teeth) {
+    const auto& tool = job.tools[std::size_t(job.operations[std::size_t(other.operation)].tool)];
+    double& most = away[other.tooth];
+    most = std::max(most, other.again.away(tool.stick_out_mm));
+  }
+  return away;
 }
 
 }  // namespace
@@ -159,6 +174,10 @@ Status BevelGearCheck::rapids_clear(const readback::OperationTrace& trace, const
   return fail_as(DiagnosticKind::verification, "a rapid passes through the blank; {}", told(*first));
 }
 
+bool BevelGearCheck::may_cut(const path::ToolMotion& motion) const { return check_.among_teeth(motion); }
+
+bool BevelGearCheck::measures(int operation) const { return finisher(job_) == std::size_t(operation); }
+
 /// Before copies go: the joints of turned teeth differ where the gear is off the axis of its rotary.
 void BevelGearCheck::meet(const readback::OperationTrace& trace, std::span<const path::ToolMotion> motions,
                           const readback::NcControl& control) {
@@ -167,14 +186,21 @@ void BevelGearCheck::meet(const readback::OperationTrace& trace, std::span<const
 
 void BevelGearCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   const MovingAxes moving = std::exchange(moving_, {});
+  const std::map<int, double> unlike = unlike_teeth(program, job_);
   clock.run("proof of the program", [&] {
-    process::with_all_motions(
-        program, [&](const auto& motions, auto likes) { result = finger::verify_teeth(check_, motions, likes); });
+    process::with_all_motions(program, [&](const auto& motions, auto likes) {
+      result = finger::verify_teeth(check_, motions, likes, unlike);
+    });
   });
+  const std::size_t before = program.reasons.size();
   judge_teeth(limits_, result, program.reasons);
+  if (program.reasons.size() > before)
+    for (const process::ToothCut& other : program.other_teeth)
+      if (other.again.missing && !other.cuts_nothing() && measures(other.operation))
+        program.reasons.push_back(told(other));
   program.gouge = result.gouge;
   program.excess = result.operations;
-  if (finishes(job_)) program.finished = result.finished;
+  if (finisher(job_)) program.finished = result.finished;
   program.surface = std::move(result.walls);
   program.directions = directions_of(gear_, job_, program, result.tilt_rad, moving);
   if (result.ridge.points > 0) program.findings.push_back(ridge_of(result.ridge));

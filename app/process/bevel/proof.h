@@ -29,6 +29,8 @@ class BevelGearCheck final : public process::GearCheck {
   [[nodiscard]] double motion_tolerance() const override;
   [[nodiscard]] Status rapids_clear(const readback::OperationTrace& trace,
                                     const readback::NcControl& control) const override;
+  [[nodiscard]] bool may_cut(const path::ToolMotion& motion) const override;
+  [[nodiscard]] bool measures(int operation) const override;
   void meet(const readback::OperationTrace& trace, std::span<const path::ToolMotion> motions,
             const readback::NcControl& control) override;
   void judge(process::ProgramProof& program, app::StageClock& clock) override;

@@ -1,10 +1,14 @@
 #include "app/process/face/proof.h"
 
 #include <algorithm>
+#include <map>
+#include <set>
 
 #include "app/base/units.h"
 #include "app/process/face/unreached.h"
 #include "app/process/proof_limits.h"
+#include "cam/proof/rapid_clearance.h"
+#include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
 
 namespace toothpath::face {
@@ -36,13 +40,19 @@ void judge_gouge(const proof::GougeResult& gouge, const analytic::GougeCheck& ch
 }
 
 /// Teeth that are followed one by one come twice: what is like no other, then what is like that.
+/// @param see  gets all motions, tooth by tooth where they come so
 proof::GougeResult gouge_of(const analytic::GougeCheck& check, process::ProgramProof& program,
-                            const std::vector<int>& tool_of_operation) {
-  if (!program.each_tooth) return check.check(program.motions, tool_of_operation, program.likes);
+                            const std::vector<int>& tool_of_operation,
+                            const std::function<void(const std::vector<path::ToolMotion>& motions)>& see) {
+  if (!program.each_tooth) {
+    see(program.motions);
+    return check.check(program.motions, tool_of_operation, program.likes);
+  }
   const WorkShare all{double(program.tooth_motions)};
   analytic::GougeStream stream(check, tool_of_operation, program.likes_follow);
   std::uint32_t firsts = 0;
   Status made = program.each_tooth(process::TeethWanted::whole, [&](auto&& motions, auto likes, bool first) {
+    if (!first) see(motions);
     auto like = likes.begin();
     for (std::size_t k = 0; k < motions.size(); ++k) {
       if (like != likes.end() && like->motion == k) ++like;
@@ -56,6 +66,9 @@ proof::GougeResult gouge_of(const analytic::GougeCheck& check, process::ProgramP
   if (!made) program.reasons.push_back(made.error().message);
   return stream.finish();
 }
+
+/// Teeth that are told one by one.
+constexpr std::size_t kTeethTold = 4;
 
 /// The least stock after an operation, as a share of its allowance.
 constexpr double kLeastAllowance = 0.8;
@@ -113,6 +126,51 @@ void judge_surface(const cut::CutSurface& surface, const job::Job& job, const pr
   judge_finished(surface, job, limits, reasons);
 }
 
+/// Motions turned to tooth space 0.
+std::vector<path::ToolMotion> in_space_0(std::vector<path::ToolMotion> motions, int teeth) {
+  for (path::ToolMotion& m : motions) {
+    if (m.tooth == 0) continue;
+    const Mat3 back = Eigen::AngleAxisd(-2 * kPi * m.tooth / teeth, Vec3::UnitZ()).toRotationMatrix();
+    for (Vec3* v : {&m.tip_from, &m.tip_to, &m.axis_from, &m.axis_to}) *v = back * *v;
+    m.tooth = 0;
+  }
+  return motions;
+}
+
+/// The first tooth of every operation, as if it were tooth 0.
+std::vector<path::ToolMotion> first_in_space_0(const std::vector<path::ToolMotion>& motions, int teeth) {
+  const std::map<int, int> first = process::first_teeth(motions);
+  std::vector<path::ToolMotion> own;
+  for (const path::ToolMotion& m : motions)
+    if (const auto found = first.find(m.operation); found != first.end() && found->second == m.tooth) own.push_back(m);
+  return in_space_0(std::move(own), teeth);
+}
+
+/// How far above the tip a mill cuts, mm: by as much a turned axis moves what it removes.
+double reach_of(const tool::ProofTool& tool) {
+  if (tool.ball_mill) return tool.ball_mill->radius_mm();  // what it removes is told by its centre
+  double reach = 0;
+  for (const tool::RoundedFrustum& body : tool.cutting) reach = std::max(reach, body.core.to + body.round);
+  return reach;
+}
+
+/// Cuts of these teeth, each its own list.
+std::map<int, std::vector<path::ToolMotion>> cuts_of(process::ProgramProof& program, const std::set<int>& teeth) {
+  std::map<int, std::vector<path::ToolMotion>> cuts;
+  const auto take = [&](const std::vector<path::ToolMotion>& motions) {
+    for (const path::ToolMotion& m : motions)
+      if (!m.rapid && teeth.contains(m.tooth)) cuts[m.tooth].push_back(m);
+  };
+  if (!program.each_tooth) {
+    take(program.motions);
+  } else if (!teeth.empty()) {
+    const Status made =
+        program.each_tooth(process::TeethWanted::cuts, [&](auto&& motions, auto, bool) { take(motions); });
+    if (!made) program.reasons.push_back(made.error().message);
+  }
+  return cuts;
+}
+
 report::Finding scallop_of(const proof::ScallopResult& scallop) {
   report::Finding finding;
   finding.key = "scallop_um";
@@ -150,7 +208,13 @@ joints::ClearanceBody clearance_body(const face_gear::FaceGear& gear) {
 FaceGearCheck::FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits,
                              const analytic::GearDistance& part, const analytic::GougeCheck& check,
                              const cut::CutSurfaceOptions& grid)
-    : job_(job), machine_(machine), limits_(limits), part_(part), check_(check), grid_(grid) {}
+    : job_(job),
+      machine_(machine),
+      limits_(limits),
+      part_(part),
+      check_(check),
+      grid_(grid),
+      tools_(tool::proof_tools(job.tools)) {}
 
 int FaceGearCheck::teeth() const { return part_.gear().parameters().teeth; }
 
@@ -161,6 +225,100 @@ Status FaceGearCheck::rapids_clear(const readback::OperationTrace& trace, const 
   return check_rapids_outside(trace, control, machine_, *job_.setup, clearance_body(part_.gear()), job_.tools);
 }
 
+bool FaceGearCheck::may_cut(const path::ToolMotion& motion) const {
+  const proof::RapidObstacle blank{part_.gear().outer_radius(), part_.gear().inner_radius(), part_.gear().blank_top()};
+  const tool::ProofTool& used = tool_of(motion.operation);
+  return !(used.ball_mill ? proof::prove_rapid(motion, *used.ball_mill, blank)
+                          : proof::prove_rapid(motion, used, blank))
+              .clear;
+}
+
+/// What finishes a region last.
+bool FaceGearCheck::measures(int operation) const {
+  return std::any_of(std::begin(path::kRegions), std::end(path::kRegions), [&](path::Region region) {
+    return path::finisher_of(job_.operations, region) == std::size_t(operation);
+  });
+}
+
+/// Later teeth that are no copies of the first one, by what may stand on them.
+class FaceGearCheck::OtherTeeth {
+ public:
+  OtherTeeth(const process::ProgramProof& program, const FaceGearCheck& check) : check_(check) {
+    for (const process::ToothCut& other : program.other_teeth) {
+      if (other.cuts_nothing() || !check.measures(other.operation)) continue;
+      double& away = away_[other.tooth];
+      away = std::max(away, other.again.away(reach_of(check.tool_of(other.operation))));
+      if (other.again.missing) unlike_.emplace(other.tooth, told(other));
+      else watch_mm_ = std::max(watch_mm_, away);
+    }
+  }
+  /// The most that one of them may be away from the first one, where all of that is cut again.
+  [[nodiscard]] double watch_mm() const { return watch_mm_; }
+
+  /// The first tooth is measured: where is nearly as much left as may be?
+  void measured(const cut::CutSurface& surface) {
+    for (const auto& [tooth, away] : away_)
+      if (!unlike_.contains(tooth) && !within(surface, away)) near_.emplace(tooth, cut::LeftOnTooth(surface.watched));
+  }
+  void see(const std::vector<path::ToolMotion>& motions) {
+    if (near_.empty()) return;
+    std::map<std::pair<int, int>, std::vector<path::ToolMotion>> cuts;  // by tooth and operation
+    for (const path::ToolMotion& m : motions)
+      if (!m.rapid && near_.contains(m.tooth) && check_.measures(m.operation))
+        cuts[{m.tooth, m.operation}].push_back(m);
+    for (auto& [key, own] : cuts)
+      near_.at(key.first).add(in_space_0(std::move(own), check_.teeth()), check_.tool_of(key.second),
+                              check_.part_.gear().blank_top());
+  }
+  /// Those that must be measured by themselves, and what is missing there; empty: nothing is.
+  [[nodiscard]] std::map<int, std::string> unlike() const {
+    std::map<int, std::string> out = unlike_;
+    for (const auto& [tooth, left] : near_)
+      if (!left.within()) out.emplace(tooth, std::string());
+    return out;
+  }
+
+ private:
+  /// No more can stand than on the first tooth and the way from there.
+  [[nodiscard]] bool within(const cut::CutSurface& surface, double away) const {
+    for (const path::Region region : path::kRegions)
+      if (const auto& limit = check_.limits_.left_in_mm[region])
+        if (surface.finished_in_mm[region] <= *limit && surface.finished_in_mm[region] + away > *limit) return false;
+    return true;
+  }
+
+  const FaceGearCheck& check_;
+  std::map<int, double> away_;
+  std::map<int, std::string> unlike_;
+  std::map<int, cut::LeftOnTooth> near_;
+  double watch_mm_ = 0;
+};
+
+const tool::ProofTool& FaceGearCheck::tool_of(int operation) const {
+  return tools_[std::size_t(job_.operations[std::size_t(operation)].tool)];
+}
+
+void FaceGearCheck::judge_unlike(process::ProgramProof& program, const OtherTeeth& others) {
+  const std::map<int, std::string> unlike = others.unlike();
+  std::set<int> teeth;
+  for (const auto& [tooth, why] : unlike) teeth.insert(tooth);
+  std::size_t refused = 0;
+  for (auto& [tooth, cuts] : cuts_of(program, teeth)) {
+    cut::CutSurface own =
+        cut::measure_cut_surface(part_, in_space_0(std::move(cuts), this->teeth()), job_.operations, job_.tools, grid_);
+    std::vector<std::string> reasons;
+    judge_surface(own, job_, limits_, reasons);
+    judge_unreached(own.unreached, job_.verify.unreached_mm, reasons);
+    const std::string& why = unlike.at(tooth);
+    if (!reasons.empty() && !why.empty()) reasons.push_back(why);
+    if (!reasons.empty() && ++refused <= kTeethTold)
+      for (const std::string& reason : reasons)
+        program.reasons.push_back(reason == why ? why : fmt::format("tooth {}: {}", tooth, reason));
+    if (own.finished.max_mm > surface.finished.max_mm) surface = std::move(own);
+  }
+  if (refused > kTeethTold) program.reasons.push_back(fmt::format("so it is with {} more teeth", refused - kTeethTold));
+}
+
 void FaceGearCheck::meet(const readback::OperationTrace&, std::span<const path::ToolMotion>,
                          const readback::NcControl&) {
 }  // all that is said of a face gear holds for the teeth that are proven
@@ -168,12 +326,20 @@ void FaceGearCheck::meet(const readback::OperationTrace&, std::span<const path::
 void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   std::vector<int> tool_of_operation;
   for (const auto& operation : job_.operations) tool_of_operation.push_back(operation.tool);
-  program.gouge = clock.run("proof of the program", [&] { return gouge_of(check_, program, tool_of_operation); });
-  judge_gouge(program.gouge, check_, limits_.gouge_mm, program.reasons);
+  OtherTeeth others(program, *this);
+  cut::CutSurfaceOptions grid = grid_;
+  grid.watch_mm = others.watch_mm();
   surface = clock.run("cut surface", [&] {
-    return cut::measure_cut_surface(part_, program.motions, job_.operations, job_.tools, grid_);
+    return cut::measure_cut_surface(part_, first_in_space_0(program.motions, teeth()), job_.operations, job_.tools,
+                                    grid);
   });
+  others.measured(surface);
+  program.gouge = clock.run("proof of the program", [&] {
+    return gouge_of(check_, program, tool_of_operation, [&](const auto& motions) { others.see(motions); });
+  });
+  judge_gouge(program.gouge, check_, limits_.gouge_mm, program.reasons);
   judge_surface(surface, job_, limits_, program.reasons);
+  clock.run("cut surface", [&] { judge_unlike(program, others); });
   if (!program.reasons.empty()) program.reasons.insert(program.reasons.end(), shortened.begin(), shortened.end());
   if (!program.reasons.empty())
     if (const auto coarse = process::coarse_words(job_, machine_, part_.gear().outer_radius()))

@@ -6,6 +6,7 @@
 #include "cam/analytic/gouge_check.h"
 #include "cam/cut/cut_surface.h"
 #include "cam/proof/limits.h"
+#include "cam/tool/proof_tool.h"
 
 namespace toothpath::face {
 
@@ -21,20 +22,29 @@ class FaceGearCheck final : public process::GearCheck {
   [[nodiscard]] double motion_tolerance() const override;
   [[nodiscard]] Status rapids_clear(const readback::OperationTrace& trace,
                                     const readback::NcControl& control) const override;
+  [[nodiscard]] bool may_cut(const path::ToolMotion& motion) const override;
+  [[nodiscard]] bool measures(int operation) const override;
   void meet(const readback::OperationTrace& trace, std::span<const path::ToolMotion> motions,
             const readback::NcControl& control) override;
   void judge(process::ProgramProof& program, app::StageClock& clock) override;
 
-  cut::CutSurface surface;             ///< of the program judged last, for the ledger; its grids stand in the proof
+  /// Of the program judged last, for the ledger; its grids stand in the proof. Of the first tooth, or of one that was
+  /// measured by itself and keeps more.
+  cut::CutSurface surface;
   std::vector<std::string> shortened;  ///< passes that end before their flank does: told beside what they leave
 
  private:
+  class OtherTeeth;
+  [[nodiscard]] const tool::ProofTool& tool_of(int operation) const;
+  void judge_unlike(process::ProgramProof& program, const OtherTeeth& others);
+
   const job::Job& job_;
   const machines::Machine& machine_;
   proof::ProofLimits limits_;
   const analytic::GearDistance& part_;
   const analytic::GougeCheck& check_;
   cut::CutSurfaceOptions grid_;
+  std::vector<tool::ProofTool> tools_;  // of the job
 };
 
 /// The blank as a cylinder about the gear axis: from the underside of the mesh to the top of the stock.

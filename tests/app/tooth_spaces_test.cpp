@@ -1,0 +1,193 @@
+// Teeth that are written out: what one of them lacks, or has in another space, is found although nothing is gouged.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+
+#include "app/commands/check.h"
+#include "app/commands/run.h"
+#include "tests/support/files.h"
+#include "tests/support/threads.h"
+
+namespace toothpath::test {
+namespace {
+
+using Lines = std::vector<std::string>;
+
+struct Verdict {
+  bool verified = false;
+  std::string reasons;
+};
+
+/// samples/spur_quick.toml with its teeth written out, on the axis of the rotary and off it.
+class ToothSpaces : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    std::string machine = file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml");
+    write_file(dir_ / "machine.toml", machine + "\n[post]\nindex_loop = false\n");
+    std::string job = file_text(TOOTHPATH_SOURCE_DIR "/samples/spur_quick.toml");
+    const auto put = [&](const std::string& from, const std::string& to) {
+      const auto at = job.find(from);
+      ASSERT_NE(at, std::string::npos) << from;
+      job.replace(at, from.size(), to);
+    };
+    put("\"xyzac_large.toml\"", "\"machine.toml\"\naccept_assumed = true");
+    put("[3.0, -2.0, 120.0]", std::string("[") + GetParam() + ", 120.0]");
+    put("[3.0, -2.0, 0.0]", std::string("[") + GetParam() + ", 0.0]");
+    write_file(dir_ / "job.toml", job);
+    commands::RunRequest request;
+    request.job_file = dir_ / "job.toml";
+    request.out_dir = dir_ / "out";
+    request.quiet = true;
+    ASSERT_EQ(commands::run_job(request).exit_code, app::ExitCode::ok);
+    std::istringstream in(file_text(dir_ / "out/program.ngc"));
+    for (std::string line; std::getline(in, line);) lines_.push_back(line);
+  }
+  Verdict check(const Lines& lines) {
+    std::string text;
+    for (const std::string& line : lines) text += line + "\n";
+    write_file(dir_ / "edited.ngc", text);
+    commands::CheckRequest request;
+    request.job_file = dir_ / "job.toml";
+    request.program_file = dir_ / "edited.ngc";
+    request.out_dir = dir_ / "check";
+    request.quiet = true;
+    const auto outcome = commands::check_program(request);
+    EXPECT_FALSE(outcome.report_json.empty()) << to_text(outcome.errors);
+    if (outcome.report_json.empty()) return {};
+    const auto report = nlohmann::json::parse(outcome.report_json);
+    Verdict out{report["verified"].get<bool>(), ""};
+    for (const auto& reason : report["reasons"]) out.reasons += reason.get<std::string>() + "\n";
+    return out;
+  }
+  /// Index of the line (TOOTH k) of an operation.
+  [[nodiscard]] std::size_t tooth(int operation, int k) const {
+    const auto from = std::find_if(lines_.begin(), lines_.end(), [&](const std::string& line) {
+      return line.starts_with("(OP " + std::to_string(operation));
+    });
+    return std::size_t(std::find(from, lines_.end(), "(TOOTH " + std::to_string(k) + ")") - lines_.begin());
+  }
+  /// Indices of the links of a tooth that name C: a pass begins there.
+  [[nodiscard]] std::vector<std::size_t> links(int operation, int k) const {
+    std::vector<std::size_t> out;
+    for (std::size_t n = tooth(operation, k) + 1; n < lines_.size() && !lines_[n].starts_with("(TOOTH"); ++n)
+      if (lines_[n].starts_with("G1 ") && lines_[n].find(" C") != std::string::npos) out.push_back(n);
+    return out;
+  }
+  /// The first pass behind a link, without the way down to it: [first, last).
+  [[nodiscard]] std::pair<std::size_t, std::size_t> pass(std::size_t link) const {
+    std::size_t first = link + 1;
+    while (lines_[first].starts_with("Z")) ++first;
+    std::size_t last = first;
+    while (lines_[last].starts_with("X")) ++last;
+    return {first, last};
+  }
+  TestDir dir_;
+  Lines lines_;
+};
+INSTANTIATE_TEST_SUITE_P(Place, ToothSpaces, testing::Values("3.0, -2.0", "14.0, -9.0"), [](const auto& place) {
+  return std::string(place.param[0] == '3' ? "OnTheAxis" : "OffTheAxis");
+});
+
+void expect_told(const Verdict& found, const std::vector<std::string>& words) {
+  EXPECT_FALSE(found.verified) << found.reasons;
+  for (const std::string& word : words)
+    EXPECT_TRUE(std::regex_search(found.reasons, std::regex(word))) << word << " in: " << found.reasons;
+}
+
+TEST_P(ToothSpaces, AsMadeEveryToothIsCut) { EXPECT_TRUE(check(lines_).verified); }
+
+TEST_P(ToothSpaces, APassThatIsLeftOut) {
+  for (const int operation : {0, 1})
+    for (const int k : {1, 37}) {
+      Lines lines = lines_;
+      const auto [first, last] = pass(links(operation, k).at(3));
+      ASSERT_GT(last - first, 4U);
+      lines.erase(lines.begin() + std::ptrdiff_t(first), lines.begin() + std::ptrdiff_t(last));
+      const auto found = check(lines);
+      const std::string name = "tooth " + std::to_string(k);
+      expect_told(found, {name + ": the cut of line [0-9]+, tooth 0, is not made again behind line [0-9]+"});
+      std::smatch line;
+      ASSERT_TRUE(std::regex_search(found.reasons, line, std::regex("behind line ([0-9]+)")));
+      EXPECT_NEAR(std::stod(line[1]), double(first), 4);
+      if (operation == 1) expect_told(found, {name + ": left material: [0-9.]+ um on the "});
+    }
+}
+
+// The sign of C, or another tooth's C: the cut is made in an open space and gouges nothing.
+TEST_P(ToothSpaces, APassInAnotherSpace) {
+  for (const int operation : {0, 1}) {
+    const std::vector<std::size_t> begin = links(operation, 2);
+    Lines lines = lines_;
+    // All of the tooth from a link on stands in space 58 instead of 2.
+    for (std::size_t n = begin.at(4) - 4; n < begin.at(5); ++n)
+      lines[n] = std::regex_replace(lines[n], std::regex(" C-12\\b"), " C12");
+    ASSERT_NE(lines, lines_);
+    expect_told(check(lines), {"tooth 2: the cut of line [0-9]+, tooth 0, is not made again behind line [0-9]+"});
+  }
+}
+
+TEST_P(ToothSpaces, AToothThatIsLeftOut) {
+  for (const int operation : {0, 1}) {
+    Lines lines = lines_;
+    lines.erase(lines.begin() + std::ptrdiff_t(tooth(operation, 5)),
+                lines.begin() + std::ptrdiff_t(tooth(operation, 6)));
+    expect_told(check(lines), {"operation " + std::to_string(operation) + " does not cut tooth 5: "});
+  }
+}
+
+TEST_P(ToothSpaces, AnOperationThatIsLeftOut) {
+  Lines lines = lines_;
+  lines.erase(lines.begin() + std::ptrdiff_t(tooth(0, 0)), lines.begin() + std::ptrdiff_t(tooth(1, 0)));
+  const auto roughing = std::find_if(lines.begin(), lines.end(), [](const auto& l) { return l.starts_with("(OP 0"); });
+  ASSERT_NE(roughing, lines.end());
+  expect_told(check(lines),
+              {"operation 1 of the job is not in the program|operation 0 of the job is not in the program"});
+}
+
+// Cuts off the flank, on a later tooth: what is measured there decides.
+TEST_P(ToothSpaces, ACutThatIsRaised) {
+  const auto [first, last] = pass(links(1, 3).at(5));
+  for (const double um : {2.0, 60.0}) {
+    Lines lines = lines_;
+    for (std::size_t n = first; n < last; ++n) {
+      std::smatch z;
+      if (!std::regex_search(lines_[n], z, std::regex(" Z([-0-9.]+)"))) continue;
+      lines[n] = z.prefix().str() + fmt::format(" Z{:.4f}", std::stod(z[1]) + 1e-3 * um) + z.suffix().str();
+    }
+    ASSERT_NE(lines, lines_);
+    const Verdict found = check(lines);
+    if (um < 5) EXPECT_TRUE(found.verified) << found.reasons;
+    else expect_told(found, {"tooth 3: left material: "});
+  }
+}
+
+// What is no copy but cuts the same is right: the order of passes, teeth that begin elsewhere.
+TEST_P(ToothSpaces, TheOrderIsFree) {
+  Lines lines = lines_;
+  for (const int operation : {1, 0}) {  // tooth 0 behind tooth 29
+    const auto a = lines.begin() + std::ptrdiff_t(tooth(operation, 0)),
+               b = lines.begin() + std::ptrdiff_t(tooth(operation, 1)),
+               c = lines.begin() + std::ptrdiff_t(tooth(operation, 30));
+    std::rotate(a, b, c);
+  }
+  const Verdict found = check(lines);
+  EXPECT_TRUE(found.verified) << found.reasons;
+}
+
+TEST_P(ToothSpaces, AnyNumberOfThreadsSaysTheSame) {
+  Lines lines = lines_;
+  for (const int k : {4, 9, 21}) {
+    const auto [first, last] = pass(links(1, k).at(3));
+    for (std::size_t n = first + 2; n < last; ++n) lines[n] = "G4 P0";
+  }
+  std::string said[2];
+  for (const int threads : {1, 4}) said[threads / 4] = on_threads(threads, [&] { return check(lines).reasons; });
+  EXPECT_NE(said[0], "");
+  EXPECT_EQ(said[0], said[1]);
+}
+
+}  // namespace
+}  // namespace toothpath::test
