@@ -116,6 +116,13 @@ Diagnostic in_file(Diagnostic error, const std::string& file) {
   return error;
 }
 
+/// By its name; what stands ahead of it where a tool is changed has none. -1: no move is named.
+int tooth_of(const readback::OperationTrace& trace) {
+  for (std::size_t k = trace.before; k < trace.moves.size(); ++k)
+    if (trace.moves[k].tooth >= 0) return trace.moves[k].tooth;
+  return -1;
+}
+
 /// One tooth of a program whose teeth are followed one by one.
 struct Tooth {
   readback::OperationTrace trace;
@@ -144,7 +151,7 @@ class EachTooth {
           const bool first = trace.before == 0;
           if (first) finish();  // the others are compared with it
           moves_ += trace.moves.size();
-          const auto moves = first ? readback::Followed::Moves::all : wanted(trace.moves[trace.before].tooth);
+          const auto moves = first ? readback::Followed::Moves::all : wanted(tooth_of(trace));
           teeth_.push_back({std::move(trace), first, moves, {}});
           if (first || moves_ >= most_moves_) finish();
         });
@@ -298,7 +305,7 @@ class TeethOneByOne {
       kept_.emplace_back(operation, std::vector<path::ToolMotion>());
     } else {
       teeth_.note(look.seen);
-      if (tooth.trace.moves[tooth.trace.before].tooth == 0) kept_.back().second = std::move(tooth.motions);
+      if (tooth_of(tooth.trace) == 0) kept_.back().second = std::move(tooth.motions);
     }
   }
   void seen_again(Tooth& tooth, Look& look) {

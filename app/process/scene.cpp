@@ -92,10 +92,8 @@ class SceneWalk {
     for (const auto& op : read_.copies.operations)
       for (const auto& trace : read_.operations)
         if (op.operation == m.operation && trace.operation == m.operation && op.moves_per_tooth > 0 &&
-            !op.turns.empty()) {
-          const std::size_t copy = i < trace.lead ? 0 : (i - trace.lead) / op.moves_per_tooth;
-          m.tooth = std::int16_t(op.turns[std::min(copy, op.turns.size() - 1)]);
-        }
+            !op.turns.empty())
+          m.tooth = std::int16_t(op.turn_of(i));
   }
   /// The tooth nearest to a tip, counted from that of the operation's first cut.
   [[nodiscard]] int nearest_tooth(const path::ToolMotion& m) {

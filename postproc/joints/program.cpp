@@ -445,7 +445,8 @@ class ProgramBuilder {
       (*stood_)[0] += program_.index_sign * tooth_angle(tooth_of_place(teeth_ - 1, options_.tooth_stride, teeth_));
     }
     if (program_.loop)
-      op.rapid_minutes += tooth_angle(1) * pitches_turned(0, options_.tooth_stride, teeth_) / chain_.table[0].max_speed;
+      op.rapid_minutes +=
+          tooth_angle(1) * pitches_turned(0, teeth_, options_.tooth_stride, teeth_) / chain_.table[0].max_speed;
     program_.operations.push_back(std::move(op));
     return std::nullopt;
   }

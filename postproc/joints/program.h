@@ -149,9 +149,12 @@ struct AxisOperation {
   std::optional<tool::AptCutter> cutter;  ///< for cutter location data
   double spindle_rpm = 0;
   std::vector<ToothBlocks> teeth;  ///< one entry in a loop, else one a tooth in the order of the program
-  int first_place = 0;             ///< where the order begins; not 0 only in a program that begins in the middle
+  int first_place = 0;             ///< where the order begins; not 0 only where the operation stands here in part
+  int end_place = -1;              ///< behind its last place; -1: the order ends
   double feed_minutes = 0, rapid_minutes = 0;  ///< over all teeth
   TimedMinutes accelerated;  ///< the same with the accelerations of the axes, where the machine states them
+  [[nodiscard]] int end_of(int teeth_of_gear) const { return end_place < 0 ? teeth_of_gear : end_place; }
+  [[nodiscard]] int places(int teeth_of_gear) const { return end_of(teeth_of_gear) - first_place; }
   double clamp_minutes = 0;  ///< on top: what clamping the rotaries takes (text::note_clamp_times)
 };
 

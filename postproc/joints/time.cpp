@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "geometry/base/angle.h"
+#include "postproc/joints/tooth_order.h"
 #include "postproc/joints/words.h"
 #include "postproc/timing/model_text.h"
 #include "postproc/timing/path_timer.h"
@@ -106,11 +107,16 @@ std::size_t time_operation(AxisProgram& program, AxisOperation& op, std::optiona
   Walk place(program, op.tool_length_mm, machine);
   std::size_t ruled = 0;
   op.accelerated = {};
-  const int cut = program.teeth - op.first_place, copies = program.loop ? cut : 1;
+  const int copies = program.loop ? op.places(program.teeth) : 1;
   const std::size_t index_rotary = program.index_axis == 4 ? 1 : 0;
   const double pitch_rad = copies > 1 ? program.index_sign * index_minutes(op, copies) / (copies - 1) *
                                             machine.chain.rotary(index_rotary).max_speed
                                       : 0;
+  // In a loop the words are those of tooth 0.
+  const double first_rad = program.loop ? program.index_sign * 2 * kPi / program.teeth *
+                                              tooth_of_place(op.first_place, program.tooth_stride, program.teeth)
+                                        : 0;
+  if (stands) stands->rotary_rad[index_rotary] -= first_rad;
   std::vector<AxisBlock> room;
   for (auto& tooth : op.teeth) {
     const std::vector<AxisBlock>& blocks = tooth.all(room);
@@ -134,7 +140,7 @@ std::size_t time_operation(AxisProgram& program, AxisOperation& op, std::optiona
       else ++program.time_ruled[b.ruler];
     }
     stands = place.at();
-    stands->rotary_rad[index_rotary] += (copies - 1) * pitch_rad;
+    stands->rotary_rad[index_rotary] += first_rad + (copies - 1) * pitch_rad;
   }
   if (stands) op.accelerated.rapid += retract(*stands, program.retract_z_mm, control_of(program, machine), machine);
   return ruled;

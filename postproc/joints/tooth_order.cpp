@@ -45,11 +45,53 @@ int place_of_tooth(int tooth, int stride, int teeth) {
   return -1;
 }
 
-double pitches_turned(int first_place, int stride, int teeth) {
+double pitches_turned(int first_place, int end_place, int stride, int teeth) {
   double sum = 0;
-  for (int n = first_place + 1; n < teeth; ++n)
+  for (int n = first_place + 1; n < end_place; ++n)
     sum += std::abs(tooth_of_place(n, stride, teeth) - tooth_of_place(n - 1, stride, teeth));
   return sum;
+}
+
+AxisOperation operation_between(const AxisOperation& op, int first, int end, const AxisProgram& program) {
+  AxisOperation out = op;
+  out.first_place = first;
+  const int had = op.places(program.teeth), kept = end - first;
+  if (kept == had) return out;
+  out.end_place = end == program.teeth && op.end_place < 0 ? -1 : end;
+  const double share = static_cast<double>(kept) / had;
+  if (program.loop) {
+    // Rapids: those of the blocks, and the turns of the index.
+    double blocks = 0;
+    for (const auto& t : op.teeth)
+      for (const AxisBlock& b : t.blocks) blocks += b.kind == BlockKind::feed ? 0 : b.minutes;
+    const auto turns = [&](int from, int to) { return pitches_turned(from, to, program.tooth_stride, program.teeth); };
+    const double index = std::max(0.0, op.rapid_minutes - blocks * had);
+    const double all = turns(op.first_place, op.end_of(program.teeth));
+    out.feed_minutes *= share;
+    out.rapid_minutes = blocks * kept + (all > 0 ? index * turns(first, end) / all : 0);
+  } else {
+    const auto at = op.teeth.begin() - op.first_place;
+    out.teeth.assign(at + first, at + end);
+    out.teeth.front().unpack();
+    out.feed_minutes = out.rapid_minutes = 0;
+    std::vector<AxisBlock> room;
+    for (const ToothBlocks& tooth : out.teeth)
+      for (const AxisBlock& b : tooth.all(room))
+        (b.kind == BlockKind::feed ? out.feed_minutes : out.rapid_minutes) += b.minutes;
+  }
+  out.accelerated = {op.accelerated.feed * share, op.accelerated.rapid * share};
+  return out;
+}
+
+void sum_times(AxisProgram& program) {
+  program.minutes = program.feed_minutes = 0;
+  program.accelerated = {};
+  for (const auto& o : program.operations) {
+    program.accelerated.feed += o.accelerated.feed;
+    program.accelerated.rapid += o.accelerated.rapid;
+    program.feed_minutes += o.feed_minutes;
+    program.minutes += o.feed_minutes + o.rapid_minutes;
+  }
 }
 
 Result<AxisProgram> program_from(AxisProgram program, int operation, int tooth) {
@@ -62,39 +104,13 @@ Result<AxisProgram> program_from(AxisProgram program, int operation, int tooth) 
   if (tooth < 0 || tooth >= program.teeth)
     return fail_as(DiagnosticKind::usage, "tooth {} does not exist: the gear has the teeth 0 to {}", tooth,
                    program.teeth - 1);
-  list.erase(list.begin(), found);
-  AxisOperation& op = list.front();
-  op.first_place = place_of_tooth(tooth, program.tooth_stride, program.teeth);
-  const double share = static_cast<double>(program.teeth - op.first_place) / program.teeth;
-  if (program.loop) {
-    // Rapids: those of the blocks, and the turns of the index.
-    double blocks = 0;
-    for (const auto& t : op.teeth)
-      for (const AxisBlock& b : t.blocks) blocks += b.kind == BlockKind::feed ? 0 : b.minutes;
-    const double index = std::max(0.0, op.rapid_minutes - blocks * program.teeth);
-    const double turns = pitches_turned(0, program.tooth_stride, program.teeth);
-    op.feed_minutes *= share;
-    op.rapid_minutes =
-        blocks * (program.teeth - op.first_place) +
-        (turns > 0 ? index * pitches_turned(op.first_place, program.tooth_stride, program.teeth) / turns : 0);
-  } else {
-    const auto gone = op.teeth.begin() + op.first_place;
-    std::vector<AxisBlock> room;
-    for (auto t = op.teeth.begin(); t != gone; ++t)
-      for (const AxisBlock& b : t->all(room))
-        (b.kind == BlockKind::feed ? op.feed_minutes : op.rapid_minutes) -= b.minutes;
-    op.teeth.erase(op.teeth.begin(), gone);
-    op.teeth.front().unpack();
-  }
-  op.accelerated = {op.accelerated.feed * share, op.accelerated.rapid * share};
-  program.minutes = program.feed_minutes = 0;
-  program.accelerated = {};
-  for (const auto& o : list) {
-    program.accelerated.feed += o.accelerated.feed;
-    program.accelerated.rapid += o.accelerated.rapid;
-    program.feed_minutes += o.feed_minutes;
-    program.minutes += o.feed_minutes + o.rapid_minutes;
-  }
+  const int place = place_of_tooth(tooth, program.tooth_stride, program.teeth);
+  const auto piece = std::find_if(found, list.end(), [&](const AxisOperation& o) {
+    return o.operation == operation && place >= o.first_place && place < o.end_of(program.teeth);
+  });
+  list.erase(list.begin(), piece);
+  list.front() = operation_between(list.front(), place, list.front().end_of(program.teeth), program);
+  sum_times(program);
   program.restart = ProgramRestart{operation, tooth};
   return program;
 }

@@ -24,8 +24,15 @@ namespace toothpath::joints {
 /// Place of a tooth in the order, 0 <= tooth < teeth.
 [[nodiscard]] int place_of_tooth(int tooth, int stride, int teeth);
 
-/// Turns of the index rotary from place to place, in pitches, from `first_place` to the end.
-[[nodiscard]] double pitches_turned(int first_place, int stride, int teeth);
+/// Turns of the index rotary from place to place, in pitches, from `first_place` to the one ahead of `end_place`.
+[[nodiscard]] double pitches_turned(int first_place, int end_place, int stride, int teeth);
+
+/// The places [first, end) of an operation, a part of those that it has, with their times.
+[[nodiscard]] AxisOperation operation_between(const AxisOperation& operation, int first, int end,
+                                              const AxisProgram& program);
+
+/// The times of a program become those of its operations.
+void sum_times(AxisProgram& program);
 
 /// The same program from one tooth of one operation on: operations and teeth ahead of it are left out, times are those
 /// of what is left. Ranges and bounds stay those of the whole program, which they hold for. Errors (kind usage): no

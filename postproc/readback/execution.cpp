@@ -101,6 +101,7 @@ NcExecution::NcExecution(const NcControl& control, const NcRules& rules,
 
 void NcExecution::begin_operation(int operation) {
   operation_ = operation;
+  ++piece_;
   clamps_.fill(Clamp::unknown);  // it may be begun with by hand
   spindle_set_ = false;
   tooth_ = -1;
@@ -359,6 +360,7 @@ NcExecution::Problem NcExecution::end_program(bool inside_call) {
     e.joints = joints_;
     e.dwell_min = static_cast<float>(std::exchange(dwell_min_, 0));
     e.operation = static_cast<std::int16_t>(operation_);
+    e.piece = static_cast<std::int16_t>(piece_);
     e.tool = static_cast<std::int16_t>(tool_);
     e.line = last_line_;
     e.rapid = e.machine = true;
@@ -513,6 +515,7 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   e.known = known(goal) && known(joints_);
   e.line = line;
   e.operation = static_cast<std::int16_t>(operation_);
+  e.piece = static_cast<std::int16_t>(piece_);
   e.tool = static_cast<std::int16_t>(tool_);
   e.rapid = m.rapid;
   e.speed_rpm = spindle_ ? static_cast<float>(speed_) : 0;

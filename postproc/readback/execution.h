@@ -203,7 +203,7 @@ class NcExecution {
   std::array<double, 5> rolled_{};    // rotaries that roll over by the sign of their words: as the control adds them up
   double frame_deg_ = 0;
   std::optional<TiltedPlane> plane_;
-  int operation_ = -1, tooth_ = -1, tool_ = -1, next_tool_ = -1;
+  int operation_ = -1, piece_ = -1, tooth_ = -1, tool_ = -1, next_tool_ = -1;
   Feed feed_mode_ = Feed::none;
   std::optional<double> feed_, length_;
   std::optional<Vec3> offset_;

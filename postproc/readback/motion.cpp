@@ -186,8 +186,7 @@ class TraceFollower {
     if (named >= 0) return named;
     if (!copies_.copies || operation_ == nullptr || operation_->moves_per_tooth == 0 || operation_->turns.empty())
       return nearest_tooth(tip, reference_, teeth_);
-    const std::size_t copy = i < trace_.lead ? 0 : (i - trace_.lead) / operation_->moves_per_tooth;
-    return operation_->turns[std::min(copy, operation_->turns.size() - 1)];
+    return operation_->turn_of(i);
   }
   /// What the corners at both ends of move i may leave, mm and rad.
   [[nodiscard]] std::pair<double, double> corners(std::size_t i, double length) const {

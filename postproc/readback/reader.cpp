@@ -39,6 +39,9 @@ class CopyCheck {
       if (c.teeth() == 0 || c.teeth() % z != 0)
         differ(0, fmt::format("operation {}: {} moves are not {} equal teeth", op, c.teeth(), teeth));
       else state_[op].per_tooth = c.teeth() / z;
+      for (const auto& piece : c.pieces)
+        if (const std::size_t per_tooth = state_[op].per_tooth; per_tooth > 0 && piece.teeth() % per_tooth != 0)
+          differ(0, fmt::format("operation {}: {} moves are no whole number of teeth", op, piece.teeth()));
     }
     if (index_sign == 0 && teeth > 1) differ(0, "the gear axis is not the axis of the rotary that carries the work");
   }
@@ -48,12 +51,19 @@ class CopyCheck {
     State& s = state_[m.operation];
     const OperationMoves& c = counts_.at(m.operation);
     const std::size_t i = s.seen++;
-    if (i < c.lead || i >= c.total - c.trail) {
-      if (i < c.lead) s.kept.push_back(m);
+    while (s.piece + 1 < c.pieces.size() && i >= c.pieces[s.piece + 1].first) {
+      s.before += c.pieces[s.piece].teeth();
+      ++s.piece;
+    }
+    const OperationMoves::Piece& piece = c.pieces[s.piece];
+    if (i < piece.begin() || i >= piece.end()) {
+      if (i < c.lead()) s.kept.push_back(m);
       return;
     }
     if (!result_.copies) return;
-    const std::size_t copy = (i - c.lead) / s.per_tooth, position = (i - c.lead) % s.per_tooth;
+    const std::size_t n = s.before + i - piece.begin();
+    const std::size_t copy = n / s.per_tooth, position = n % s.per_tooth;
+    if (i == piece.begin()) s.tool = m.tool;
     if (copy == 0) {
       if (position == 0) s.turns.push_back(0);
       s.kept.push_back(m);
@@ -64,9 +74,9 @@ class CopyCheck {
       s.turn_known = false;
     }
     s.commanded = static_cast<std::uint8_t>(s.commanded | m.commanded);
-    if (copy == 1 && m.rapid && s.kept.size() == c.lead + s.per_tooth + position)
+    if (copy == 1 && s.piece == 0 && m.rapid && s.kept.size() == c.lead() + s.per_tooth + position)
       s.kept.push_back(m);  // link to the second
-    const ExecutedMove first = s.kept[c.lead + position];
+    const ExecutedMove first = s.kept[c.lead() + position];
     compare(m, s, first);
   }
 
@@ -81,7 +91,12 @@ class CopyCheck {
           differ(0, fmt::format("operation {}: tooth {} twice", op, k));
         met[static_cast<std::size_t>(k)] = true;
       }
-      result_.operations.push_back({op, s.per_tooth, s.turns});
+      result_.operations.push_back({op, s.per_tooth, s.turns, {}});
+      std::size_t copies = 0;
+      for (const auto& piece : counts_.at(op).pieces) {
+        result_.operations.back().pieces.push_back({piece.begin(), copies, piece.lead});
+        copies += s.per_tooth > 0 ? piece.teeth() / s.per_tooth : 0;
+      }
     }
     return result_;
   }
@@ -90,7 +105,9 @@ class CopyCheck {
  private:
   struct State {
     std::size_t per_tooth = 0, seen = 0;
-    std::uint8_t commanded = 0;  // axes with a word since this copy began
+    std::size_t piece = 0, before = 0;  // that the moves are in, moves of teeth ahead of it
+    int tool = 0;                       // of the piece
+    std::uint8_t commanded = 0;         // axes with a word since this copy began
     bool turn_known = false;
     int turn = 0;  // of this copy, whole index steps, not reduced
     std::vector<int> turns;
@@ -130,7 +147,7 @@ class CopyCheck {
     if (m.blend_mm != first.blend_mm || m.blend_axis_rad != first.blend_axis_rad ||
         m.corner_path_mm != first.corner_path_mm || std::abs(m.corner_share - first.corner_share) > kSameShare)
       return differ(m.line, "the control may leave corners otherwise than in the first tooth");
-    if (m.rapid != first.rapid || m.tool != first.tool) return differ(m.line, "rapid and feed or tool differ");
+    if (m.rapid != first.rapid || m.tool != s.tool) return differ(m.line, "rapid and feed or tool differ");
     if (!m.rapid && std::abs(m.minutes - first.minutes) > 1e-9 * first.minutes + 1e-12)
       return differ(m.line, fmt::format("block takes {} min where the first tooth has {}", m.minutes, first.minutes));
   }
@@ -168,7 +185,13 @@ class Between {
   void operator()(const ExecutedMove& m) {
     const OperationMoves& c = counts_.at(m.operation);
     const std::size_t i = seen_[m.operation]++;
-    const bool outside = m.operation < 0 || i == 0 || (trails_ && i >= c.total - c.trail);
+    // Of copies the first tooth of the first piece is kept: what another piece does ahead of its first cut is its own.
+    const bool taken_up = trails_ && m.operation >= 0 && i >= c.pieces.front().end();
+    if (m.operation != before_.operation || m.piece != before_.piece) cuts_ = false;
+    cuts_ = cuts_ || !m.rapid;
+    const auto in_teeth = [&](const OperationMoves::Piece& p) { return i >= p.begin() && i < p.end(); };
+    const bool outside =
+        m.operation < 0 || i == 0 || (taken_up && (!cuts_ || std::none_of(c.pieces.begin(), c.pieces.end(), in_teeth)));
     if (!outside) {
       open_ = false;
     } else {
@@ -193,6 +216,7 @@ class Between {
 
   const std::map<int, OperationMoves>& counts_;
   bool trails_, open_ = false;
+  bool cuts_ = false;  ///< the piece has cut
   std::map<int, std::size_t> seen_;
   ExecutedMove before_;
   std::vector<OperationTrace> made_;
@@ -272,7 +296,7 @@ class ReadBackRun {
     for (auto& [op, t] : traces_) {
       if (op < 0) continue;
       t.operation = op;
-      t.lead = counts_[op].lead;
+      t.lead = counts_[op].lead();
       t.kept_teeth = all && !result_.first_teeth ? static_cast<std::size_t>(options.teeth) : 1;
       if (result_.first_teeth) t.tool = last_tool_[op];
       else t.tool = t.moves.empty() ? 0 : t.moves.back().tool;
@@ -319,7 +343,7 @@ class ReadBackRun {
   Status one_tooth_fits(const ReadBackOptions& options) const {
     std::size_t kept = 0;
     for (const auto& [op, c] : counts_)
-      kept += op < 0 ? c.total : c.lead + c.trail + 2 * (c.teeth() / static_cast<std::size_t>(options.teeth));
+      kept += op < 0 ? c.total : c.total - c.teeth() + 2 * (c.teeth() / static_cast<std::size_t>(options.teeth));
     if (kept <= options.max_kept) return Ok{};
     Diagnostic error =
         fail("{} moves of one tooth and beside the teeth would have to be kept, more than {}", kept, options.max_kept);
@@ -383,8 +407,9 @@ void keep_first_teeth(ReadBack& read) {
     const auto labelled =
         std::find_if(trace.moves.begin(), trace.moves.end(), [](const auto& m) { return m.tooth >= 0; });
     if (labelled == trace.moves.end()) continue;
-    const int first = labelled->tooth;
-    std::erase_if(trace.moves, [&](const ExecutedMove& m) { return m.tooth >= 0 && m.tooth != first; });
+    const int first = labelled->tooth, piece = labelled->piece;
+    std::erase_if(trace.moves,
+                  [&](const ExecutedMove& m) { return m.tooth < 0 ? m.piece != piece : m.tooth != first; });
     trace.moves.shrink_to_fit();
     trace.kept_teeth = 1;
   }

@@ -106,15 +106,16 @@ struct ExecutedMove {
   float blend_axis_rad = 0;  ///< the same of the tool axis (TA of cycle 32)
   float corner_path_mm =
       0;  ///< every axis may leave the path within this way ahead of and behind a corner (G641 ADIS) ..
-  float corner_share = 0;    ///< .. which is this part of the block, a half at most
-  std::int16_t tooth = -1;   ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
-  std::uint8_t clamped = 0;  ///< bit a: the rotary is held
-  bool plane = false;        ///< in a tilted plane, or the turn of the rotaries to it
+  float corner_share = 0;   ///< .. which is this part of the block, a half at most
+  std::int16_t tooth = -1;  ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
+  std::int16_t piece = -1;  ///< how many comments of operations stand ahead of that of `operation`
   float tolerance_mm = 0;
   float dwell_min = 0;             ///< the program waits ahead of the move
-  bool machine = false;            ///< G53, or the block that switches tool length compensation on
-  bool known = false;              ///< all joints were known before and after
-  bool in_doubt = false;           ///< a stop ahead may have ended spindle and coolant: the builder's business
+  bool machine : 1 = false;        ///< G53, or the block that switches tool length compensation on
+  bool known : 1 = false;          ///< all joints were known before and after
+  bool in_doubt : 1 = false;       ///< a stop ahead may have ended spindle and coolant: the builder's business
+  bool plane : 1 = false;          ///< in a tilted plane, or the turn of the rotaries to it
+  std::uint8_t clamped = 0;        ///< bit a: the rotary is held
   std::uint8_t coolants = 0;       ///< machines::bit_of: it is on
   float speed_rpm = 0;             ///< of the spindle; 0: it stands
   std::uint64_t vector_print = 0;  ///< of the words of a tool vector, FNV-1a over their bytes; 0: rotary words
@@ -143,6 +144,20 @@ struct TurnedCopies {
     int operation = 0;
     std::size_t moves_per_tooth = 0;  ///< G53 retracts before and after left out
     std::vector<int> turns;           ///< copy number -> tooth space
+    /// An operation that is taken up again, with another tool: where its teeth begin among its moves, and how many
+    /// copies stand ahead of them. One piece where it is not.
+    struct Piece {
+      std::size_t begin = 0, copies = 0;
+      std::size_t lead = 0;  ///< machine moves of the piece ahead of them
+    };
+    std::vector<Piece> pieces;
+    /// Tooth space of a move of the operation; there is a copy at least.
+    [[nodiscard]] int turn_of(std::size_t move) const {
+      std::size_t copy = 0;
+      for (const Piece& p : pieces)
+        if (move >= p.begin) copy = p.copies + (move - p.begin) / moves_per_tooth;
+      return turns[std::min(copy, turns.size() - 1)];
+    }
   };
   std::vector<Operation> operations;
 };

@@ -35,8 +35,8 @@ int number_of(std::string_view line) {
   return number;
 }
 
-/// First lines of the teeth as they are executed. A tooth begins with its TOOTH comment, or after as many moves as the
-/// others have.
+/// First lines of the teeth of every piece of the program (ExecutedMove::piece) as they are executed. A tooth begins
+/// with its TOOTH comment, or after as many moves as the others have.
 class FirstLines {
  public:
   FirstLines(const std::map<int, readback::OperationMoves>& counts, const std::map<int, std::size_t>& teeth)
@@ -44,20 +44,20 @@ class FirstLines {
 
   void operator()(const readback::ExecutedMove& m) {
     if (m.operation < 0) return;
-    const readback::OperationMoves& c = counts_.at(m.operation);
-    const std::size_t i = seen_[m.operation]++;
-    if (i < c.lead || i >= c.total - c.trail) return;
-    auto& lines = lines_[m.operation];
+    const readback::OperationMoves& c = counts_.at(m.piece);
+    const std::size_t i = seen_[m.piece]++;
+    if (i < c.lead() || i >= c.total - c.trail()) return;
+    auto& lines = lines_[m.piece];
     if (m.tooth >= 0) {
-      if (lines.empty() || label_[m.operation] != m.tooth) lines.push_back({m.line, m.tooth});
-      label_[m.operation] = m.tooth;
+      if (lines.empty() || label_[m.piece] != m.tooth) lines.push_back({m.line, m.tooth});
+      label_[m.piece] = m.tooth;
       return;
     }
-    const std::size_t n = teeth_.at(m.operation), per_tooth = c.teeth() / n;
-    if (per_tooth * n == c.teeth() && (i - c.lead) % per_tooth == 0) lines.push_back({m.line, -1});
+    const std::size_t n = teeth_.at(m.piece), per_tooth = c.teeth() / n;
+    if (per_tooth * n == c.teeth() && (i - c.lead()) % per_tooth == 0) lines.push_back({m.line, -1});
   }
-  /// Line and label (-1: none) of every tooth of an operation.
-  [[nodiscard]] const std::vector<std::pair<int, int>>& of(int operation) { return lines_[operation]; }
+  /// Line and label (-1: none) of every tooth of a piece.
+  [[nodiscard]] const std::vector<std::pair<int, int>>& of(int piece) { return lines_[piece]; }
 
  private:
   const std::map<int, readback::OperationMoves>& counts_;
@@ -91,15 +91,15 @@ RestartMenu operations_in(const std::vector<std::string_view>& lines) {
   return menu;
 }
 
-/// Places of the teeth that are called, and where the opening ends.
-std::optional<Diagnostic> place_calls(RestartOperation& op, const joints::AxisProgram& program,
-                                      const std::vector<std::string_view>& lines) {
-  int place = program.teeth - static_cast<int>(op.teeth.size());
+/// Places of the teeth that are called, from `place` on, and where the opening ends.
+std::optional<Diagnostic> place_calls(RestartOperation& op, int place, std::size_t teeth,
+                                      const joints::AxisProgram& program, const std::vector<std::string_view>& lines) {
+  if (op.teeth.size() != teeth)
+    return fail("operation {} has {} teeth in the text where {} are expected", op.operation, op.teeth.size(), teeth);
   for (RestartTooth& t : op.teeth) {
     t.place = place++;
-    const int expected = joints::tooth_of_place(std::max(0, t.place), program.tooth_stride, program.teeth);
-    if (t.place < 0 || t.tooth != expected)
-      return fail("line {}: tooth {} where tooth {} is expected", t.at.line, t.tooth, expected);
+    const int expected = joints::tooth_of_place(t.place, program.tooth_stride, program.teeth);
+    if (t.tooth != expected) return fail("line {}: tooth {} where tooth {} is expected", t.at.line, t.tooth, expected);
   }
   const int end = op.teeth.front().at.line - 2;  // ahead of the comment
   op.opening_end = {end, number_of(lines[static_cast<std::size_t>(end) - 1])};
@@ -112,44 +112,47 @@ Result<RestartMenu> restart_menu(std::string_view text, const std::string& file,
                                  const joints::AxisProgram& program) {
   const std::vector<std::string_view> lines = readback::lines_of(text);
   RestartMenu menu = operations_in(lines);
-  std::map<int, std::size_t> teeth;
-  for (const auto& op : menu.operations) teeth[op.operation] = static_cast<std::size_t>(program.teeth);
-  for (const auto& op : program.operations)
-    teeth[op.operation] = static_cast<std::size_t>(program.teeth - op.first_place);
-  for (std::size_t k = 1; k < program.operations.size(); ++k)
-    for (auto& op : menu.operations)
-      if (op.operation == program.operations[k].operation &&
-          program.operations[k].tool_number == program.operations[k - 1].tool_number)
-        op.tool_before = program.operations[k].tool_number;
+  std::map<int, std::size_t> teeth;  // of every piece: an operation, or what one tool does of it
+  std::map<int, int> first_place;
+  const auto pieces = static_cast<int>(menu.operations.size());
+  for (int k = 0; k < pieces; ++k) {
+    RestartOperation& op = menu.operations[static_cast<std::size_t>(k)];
+    const bool known = static_cast<std::size_t>(k) < program.operations.size();
+    const joints::AxisOperation none, &made = known ? program.operations[static_cast<std::size_t>(k)] : none;
+    teeth[k] = static_cast<std::size_t>(made.places(program.teeth));
+    first_place[k] = made.first_place;
+    op.tool = made.tool_number;
+    if (known && k > 0 && program.operations[static_cast<std::size_t>(k) - 1].tool_number == made.tool_number)
+      op.tool_before = made.tool_number;
+  }
   const auto tooth_at = [&](int place) { return joints::tooth_of_place(place, program.tooth_stride, program.teeth); };
-  for (auto& op : menu.operations)
-    if (op.first_tooth.line != 0)
-      for (int n = program.teeth - static_cast<int>(teeth[op.operation]); n < program.teeth; ++n)
+  for (int k = 0; k < pieces; ++k)
+    if (auto& op = menu.operations[static_cast<std::size_t>(k)]; op.first_tooth.line != 0)
+      for (int n = first_place[k]; n < first_place[k] + static_cast<int>(teeth[k]); ++n)
         op.teeth.push_back({n, tooth_at(n), {}});
-  for (auto& op : menu.operations)
-    if (op.first_tooth.line == 0 && !op.teeth.empty())
-      if (auto bad = place_calls(op, program, lines)) return *bad;
+  for (int k = 0; k < pieces; ++k)
+    if (auto& op = menu.operations[static_cast<std::size_t>(k)]; op.first_tooth.line == 0 && !op.teeth.empty())
+      if (auto bad = place_calls(op, first_place[k], teeth[k], program, lines)) return *bad;
   const auto has_lines = [](const auto& op) { return op.first_tooth.line != 0 || !op.teeth.empty(); };
   if (std::all_of(menu.operations.begin(), menu.operations.end(), has_lines)) return menu;
 
   std::map<int, readback::OperationMoves> counts;
-  const auto count = [&](const readback::ExecutedMove& m) { counts[m.operation].add(m); };
+  const auto count = [&](const readback::ExecutedMove& m) { counts[m.piece].add(m); };
   if (auto s = readback::execute_nc(text, file, control, count); !s) return s.error();
-  for (const auto& [op, c] : counts) teeth.emplace(op, static_cast<std::size_t>(program.teeth));
+  for (const auto& [piece, c] : counts) teeth.emplace(piece, static_cast<std::size_t>(program.teeth));
   FirstLines first(counts, teeth);
   if (auto s = readback::execute_nc(text, file, control, [&](const readback::ExecutedMove& m) { first(m); }); !s)
     return s.error();
 
-  for (auto& op : menu.operations) {
+  for (int k = 0; k < pieces; ++k) {
+    RestartOperation& op = menu.operations[static_cast<std::size_t>(k)];
     if (has_lines(op)) continue;
-    const auto& found = first.of(op.operation);
-    if (found.size() != teeth[op.operation])
-      return fail("operation {} has {} teeth in the text where {} are expected", op.operation, found.size(),
-                  teeth[op.operation]);
-    const int start = program.teeth - static_cast<int>(found.size());
+    const auto& found = first.of(k);
+    if (found.size() != teeth[k])
+      return fail("operation {} has {} teeth in the text where {} are expected", op.operation, found.size(), teeth[k]);
     for (std::size_t n = 0; n < found.size(); ++n) {
       RestartTooth t;
-      t.place = start + static_cast<int>(n);
+      t.place = first_place[k] + static_cast<int>(n);
       t.tooth = tooth_at(t.place);
       if (found[n].second >= 0 && found[n].second != t.tooth)
         return fail("line {}: tooth {} where tooth {} is expected", found[n].first, found[n].second, t.tooth);

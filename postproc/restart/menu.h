@@ -32,6 +32,7 @@ struct RestartOperation {
   RestartLine at;           ///< the comment (OP n type)
   RestartLine first_tooth;  ///< loops: the line that sets the first tooth; line 0: no loop
   RestartLine opening_end;  ///< last line ahead of the first tooth that is written out or called; line 0: a loop
+  int tool = 0;             ///< T with which it cuts; an operation that changes its tool has an entry for each
   int tool_before = 0;      ///< T that must be in the spindle: the opening goes on with it; 0: the opening fetches it
   std::vector<RestartTooth> teeth;  ///< in the order of the program
 };

@@ -96,7 +96,7 @@ class RestartComparison {
     const auto part = count_moves(restart, file_, control_, from_.operation);
     if (!part) return part.error();
     if (!same_numbers(*all, *part)) return std::move(proof_);
-    const std::size_t lead = part->operation.lead, tail = part->total - lead;
+    const std::size_t lead = part->operation.lead(), tail = part->total - lead;
     if (auto s = keep_tail(whole, all->total - tail, tail); !s) return s.error();
     if (auto s = compare(restart, lead); !s) return s.error();
     proof_.same = proof_.difference.empty();
@@ -120,7 +120,7 @@ class RestartComparison {
           0, 0,
           fmt::format("operation {} has {} moves from tooth {} on, not {} of {} teeth of the {} of the whole program",
                       from_.operation, in_part.teeth(), from_.tooth, left, from_.teeth, in_all.teeth()));
-    if (part.total - in_part.lead > all.total) differs(0, 0, "the restart has more moves than the whole program");
+    if (part.total - in_part.lead() > all.total) differs(0, 0, "the restart has more moves than the whole program");
     return proof_.difference.empty();
   }
 

@@ -104,7 +104,7 @@ void note_clamp_times(joints::AxisProgram& program, const NcDialect& dialect, bo
         if (n == 0) first_tooth = clamps.minutes() - before;
       }
     double minutes = clamps.minutes() - before;
-    if (program.loop) minutes = first_tooth + (minutes - first_tooth) * (program.teeth - op.first_place - 1);
+    if (program.loop) minutes = first_tooth + (minutes - first_tooth) * (op.places(program.teeth) - 1);
     op.clamp_minutes = minutes;
     program.clamp_minutes += minutes;
   }

@@ -47,7 +47,6 @@ NcLines::Values program_values(const joints::AxisProgram& program, const NcDiale
       values["zeros"] += fmt::format("{}{}{}", values["zeros"].empty() ? "" : " ", letter, unsigned_value(0, 0));
   values["free"] = unsigned_value(kFreeFeed, 0);
   values["teeth"] = std::to_string(program.teeth);
-  values["last"] = std::to_string(program.teeth - 1);
   values["stride"] = std::to_string(program.tooth_stride);
   values["tooth"] = program.tooth_stride == 1 ? dialect.loop.place : dialect.loop.tooth;
   values["sign"] = program.index_sign < 0 ? "0-" : "";
@@ -160,10 +159,12 @@ std::vector<std::string> order_comments(const joints::AxisProgram& program) {
   return out;
 }
 
-std::string first_tooth_comment(const joints::AxisProgram& program) {
-  if (program.tooth_stride == 1) return fmt::format("FIRST TOOTH, 0 TO {}", program.teeth - 1);
-  return fmt::format("FIRST TOOTH BY ITS PLACE, 0 TO {}: TOOTH = PLACE * {} MOD {}", program.teeth - 1,
-                     program.tooth_stride, program.teeth);
+std::string first_tooth_comment(const joints::AxisProgram& program, const joints::AxisOperation& operation) {
+  const int first = operation.end_place < 0 ? 0 : operation.first_place;
+  const int last = operation.end_of(program.teeth) - 1;
+  if (program.tooth_stride == 1) return fmt::format("FIRST TOOTH, {} TO {}", first, last);
+  return fmt::format("FIRST TOOTH BY ITS PLACE, {} TO {}: TOOTH = PLACE * {} MOD {}", first, last, program.tooth_stride,
+                     program.teeth);
 }
 
 void NcLines::line(std::string_view text) {

@@ -64,6 +64,7 @@ class NcLines {
 /// Those that tell the order of the teeth and where the program begins, if not as usual.
 [[nodiscard]] std::vector<std::string> order_comments(const joints::AxisProgram& program);
 /// Names the line behind it: where the operator may set another first tooth.
-[[nodiscard]] std::string first_tooth_comment(const joints::AxisProgram& program);
+[[nodiscard]] std::string first_tooth_comment(const joints::AxisProgram& program,
+                                              const joints::AxisOperation& operation);
 
 }  // namespace toothpath::text

@@ -67,7 +67,7 @@ class Writer {
     for (const auto& t : templates)
       if (t == "{safe_start}") safe_start();
       else if (t == "{pick}") out_.fill(program_.tooth_stride == 1 ? NcLinesOfText{} : dialect_.loop.pick, values_);
-      else if (t == "{first_tooth}") out_.comment(first_tooth_comment(program_));
+      else if (t == "{first_tooth}") out_.comment(first_tooth_comment(program_, *now_));
       else if (t.find("{blend}") != std::string::npos) {
         if (!corners_.contour) corner_line(t);
       } else if (t == "{path_group_end}")
@@ -149,8 +149,9 @@ class Writer {
     const auto at = static_cast<std::size_t>(position);
     const auto& all = program_.operations;
     const bool changes = at == 0 || all[at - 1].tool_number != op.tool_number;
+    const bool begins = at == 0 || all[at - 1].operation != op.operation;
     const Stops stops = header_.wishes.stops;
-    if (at > 0 && (stops == Stops::operations || (stops == Stops::tool_changes && changes))) stop();
+    if (at > 0 && ((stops == Stops::operations && begins) || (stops == Stops::tool_changes && changes))) stop();
     fill(changes ? dialect_.tool_call : dialect_.tool_keep);
     fill(dialect_.tool_change);
     const auto next = std::find_if(all.begin() + position, all.end(),
@@ -163,12 +164,15 @@ class Writer {
   void set_values(const joints::AxisOperation& op, int position) {
     values_["tool"] = std::to_string(op.tool_number);
     values_["speed"] = std::to_string(std::llround(op.spindle_rpm));
-    values_["label"] = std::to_string(kFirstLabel + 2 * position);
+    values_["label"] = std::to_string(kFirstLabel + 2 * body_of(position));
     values_["label+1"] = std::to_string(kFirstLabel + 2 * position + 1);
     values_["first"] = std::to_string(op.first_place);
+    values_["end"] = std::to_string(op.end_of(program_.teeth));
+    values_["last"] = std::to_string(op.end_of(program_.teeth) - 1);
+    now_ = &op;
     values_["work_top"] = linear(program_.retract_z_mm - op.tool_length_mm - program_.work_offset_at_mm.z());
     values_["operation"] = std::to_string(op.operation);
-    values_["program"] = std::to_string(subprogram_number(position));
+    values_["program"] = std::to_string(header_.program_number + bodies(body_of(position) + 1));
   }
 
   void operation(const joints::AxisOperation& op, int position) {
@@ -180,7 +184,7 @@ class Writer {
     const NcLoop& loop = dialect_.loop;
     std::vector<joints::AxisBlock> room;
     tilts_ = planes_.any(op.teeth.front().all(room));
-    if (program_.loop && loop.form == NcLoop::Form::sub_program) loop_body(op);
+    if (program_.loop && loop.form == NcLoop::Form::sub_program && body_of(position) == position) loop_body(op);
     number_here(position, 0);
     machine_retract();
     tool_call(op, position);
@@ -240,7 +244,7 @@ class Writer {
 
   // One tooth stands behind the main program and is called for each.
   void calls(const joints::AxisOperation& op, int position) {
-    const int count = static_cast<int>(program_.operations.size()), last = subprogram_number(count - 1);
+    const int count = bodies(operations()), last = header_.program_number + count;
     const bool numbered = dialect_.loop.call.front().find("{program}") != std::string::npos;
     if (numbered && last > kLastProgram) {
       error_ = fail(
@@ -249,7 +253,7 @@ class Writer {
           header_.program_number, last, kLastProgram, kLastProgram - count);
       return;
     }
-    for (int n = op.first_place; n < program_.teeth; ++n) {
+    for (int n = op.first_place; n < op.end_of(program_.teeth); ++n) {
       const int k = joints::tooth_of_place(n, program_.tooth_stride, program_.teeth);
       out_.comment(fmt::format("AT TOOTH {}", k));
       number_here(position, static_cast<std::size_t>(n - op.first_place) + 1);
@@ -263,14 +267,37 @@ class Writer {
     fill(dialect_.loop.zero_off);
     forget();
   }
-  /// Behind that of the main program, so that those of another job are not called.
-  [[nodiscard]] int subprogram_number(int position) const { return header_.program_number + 1 + position; }
+  /// Where the sub-program of an operation comes from: a sister that goes on with it calls the one that is there,
+  /// unless that names its tool.
+  [[nodiscard]] int body_of(int position) const {
+    const NcLoop::Form form = dialect_.loop.form;
+    const bool apart = form == NcLoop::Form::sub_program || form == NcLoop::Form::called;
+    const auto& all = program_.operations;
+    const auto& op = all[static_cast<std::size_t>(position)];
+    const auto shares = [&](const joints::AxisOperation& other) {
+      return other.operation == op.operation && (!tcp_ || other.tool_number == op.tool_number);
+    };
+    int first = position;
+    while (apart && first > 0 && shares(all[static_cast<std::size_t>(first) - 1])) --first;
+    return first;
+  }
+  /// Sub-programs of the operations ahead of `end`. Their numbers stand behind that of the main program, so that those
+  /// of another job are not called.
+  [[nodiscard]] int bodies(int end) const {
+    int count = 0;
+    for (int i = 0; i < end; ++i) count += body_of(i) == i ? 1 : 0;
+    return count;
+  }
+  [[nodiscard]] int operations() const { return static_cast<int>(program_.operations.size()); }
+  [[nodiscard]] bool has_subprograms() const { return program_.loop && dialect_.loop.form == NcLoop::Form::called; }
   void write_subprograms() {
-    if (!program_.loop || dialect_.loop.form != NcLoop::Form::called) return;
-    for (std::size_t i = 0; i < program_.operations.size() && !error_; ++i) {
-      set_values(program_.operations[i], static_cast<int>(i));
+    if (!has_subprograms()) return;
+    for (int i = 0; i < operations() && !error_; ++i) {
+      if (body_of(i) != i) continue;
+      const joints::AxisOperation& op = program_.operations[static_cast<std::size_t>(i)];
+      set_values(op, i);
       fill(dialect_.loop.before);
-      tooth_of_loop(program_.operations[i]);
+      tooth_of_loop(op);
       fill(dialect_.loop.after);
     }
   }
@@ -479,6 +506,7 @@ class Writer {
   bool zero_moves_;  // the index moves the zero of its rotary
   std::optional<machines::CoolantWords> coolant_;
   std::optional<Diagnostic> error_;
+  const joints::AxisOperation* now_ = nullptr;
   int motion_ = -1;         // 0, 1; -1: to be printed
   std::int64_t feed_ = -1;  // F per minute in force, millionths; -1: to be printed
   bool inverse_time_ = false;

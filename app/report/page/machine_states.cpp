@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "geometry/base/angle.h"
@@ -60,8 +61,10 @@ StateRecorder::StateRecorder(std::vector<int> tool_numbers, std::size_t operatio
       others_(std::clamp<std::size_t>(kOtherStates / std::max<std::size_t>(1, tooth_spaces), 4, each_)) {}
 
 void StateRecorder::add(const readback::ExecutedMove& m) {
-  if (m.operation != operation_ || m.tooth != tooth_ || m.tool != tool_) end_stretch();
+  if (m.operation != operation_ || m.piece != piece_ || m.tooth != tooth_ || m.tool != tool_) end_stretch();
+  if (m.piece != piece_) in_piece_ = 0;
   operation_ = m.operation;
+  piece_ = m.piece;
   tooth_ = m.tooth;
   tool_ = m.tool;
   if (!m.known || open_.size() >= kMostMoves) return;
@@ -78,7 +81,9 @@ void StateRecorder::end_stretch() {
   if (open_.empty()) return;
   if (operation_ >= 0 && tooth_ < 0 && looped_ + open_.size() <= kMostMoves) {
     looped_ += open_.size();
-    loops_.push_back({std::move(open_), out_.stretches.size(), operation_});
+    const std::size_t count = open_.size();
+    loops_.push_back({std::move(open_), out_.stretches.size(), operation_, piece_, in_piece_});
+    in_piece_ += count;
   } else {
     add_stretch(open_, operation_, tooth_);
   }
@@ -105,22 +110,26 @@ void StateRecorder::add_stretch(const Moves& moves, int operation, int tooth) {
   if (keep) kept.push_back({moves, first, out_.states.size() - first});
 }
 
-void StateRecorder::add_loop(const readback::ReadBack& read, const Moves& moves, int operation) {
+void StateRecorder::add_loop(const readback::ReadBack& read, const Loop& loop, std::size_t piece) {
+  const Moves& moves = loop.moves;
   const auto trace = std::find_if(read.operations.begin(), read.operations.end(),
-                                  [&](const auto& o) { return o.operation == operation; });
+                                  [&](const auto& o) { return o.operation == loop.operation; });
   const auto copies = std::find_if(read.copies.operations.begin(), read.copies.operations.end(),
-                                   [&](const auto& o) { return o.operation == operation; });
-  if (!read.copies.copies || trace == read.operations.end() || copies == read.copies.operations.end())
-    return add_stretch(moves, operation, -1);
-  std::size_t at = std::min(trace->lead, moves.size());
+                                   [&](const auto& o) { return o.operation == loop.operation; });
+  if (!read.copies.copies || trace == read.operations.end() || copies == read.copies.operations.end() ||
+      piece >= copies->pieces.size())
+    return add_stretch(moves, loop.operation, -1);
+  const std::size_t lead = copies->pieces[piece].lead, ahead = std::min(loop.ahead, lead);
+  std::size_t at = std::min(lead - ahead, moves.size());
   const std::size_t step = copies->moves_per_tooth;
   const auto part = [&](std::size_t from, std::size_t to) {
     return Moves(moves.begin() + std::ptrdiff_t(from), moves.begin() + std::ptrdiff_t(to));
   };
-  add_stretch(part(0, at), operation, -1);
-  for (std::size_t k = 0; k < copies->turns.size() && step > 0 && at + step <= moves.size(); ++k, at += step)
-    add_stretch(part(at, at + step), operation, copies->turns[k]);
-  add_stretch(part(at, moves.size()), operation, -1);
+  add_stretch(part(0, at), loop.operation, -1);
+  for (std::size_t k = copies->pieces[piece].copies; k < copies->turns.size() && step > 0 && at + step <= moves.size();
+       ++k, at += step)
+    add_stretch(part(at, at + step), loop.operation, copies->turns[k]);
+  add_stretch(part(at, moves.size()), loop.operation, -1);
 }
 
 SceneStates StateRecorder::finish(const readback::ReadBack& read) {
@@ -130,10 +139,13 @@ SceneStates StateRecorder::finish(const readback::ReadBack& read) {
   const auto take = [&](std::size_t to) {
     for (; next < to; ++next) all.push_back(labelled[next]);
   };
+  std::map<int, std::pair<int, std::size_t>> piece;  // of an operation: the last one, and its number among its own
   for (const Loop& loop : loops_) {
     take(loop.at);
     out_.stretches.clear();
-    add_loop(read, loop.moves, loop.operation);
+    const auto [last, first_seen] = piece.try_emplace(loop.operation, loop.piece, 0);
+    if (!first_seen && last->second.first != loop.piece) last->second = {loop.piece, last->second.second + 1};
+    add_loop(read, loop, last->second.second);
     all.insert(all.end(), out_.stretches.begin(), out_.stretches.end());
   }
   take(labelled.size());

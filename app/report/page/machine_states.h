@@ -49,23 +49,27 @@ class StateRecorder {
   };
   using Moves = std::vector<SceneState>;
 
+  /// Operations without labels wait for finish(): moves, and where their stretch stands among the others.
+  struct Loop {
+    Moves moves;
+    std::size_t at = 0;
+    int operation = -1;
+    int piece = -1;
+    std::size_t ahead = 0;  ///< states of the piece ahead of these
+  };
+
   void end_stretch();
   void add_stretch(const Moves& moves, int operation, int tooth);
   [[nodiscard]] bool add_repeated(const Moves& moves, int operation, int tooth);
-  void add_loop(const readback::ReadBack& read, const Moves& moves, int operation);
+  void add_loop(const readback::ReadBack& read, const Loop& loop, std::size_t piece);
 
   std::vector<int> tool_numbers_;
   std::size_t each_, others_;  ///< states of a tooth, of one that repeats none
   SceneStates out_;
   std::map<int, std::vector<Kept>> kept_;  ///< teeth of an operation that others may repeat
   Moves open_;
-  int operation_ = -1, tooth_ = -1, tool_ = 0;
-  /// Operations without labels wait for finish(): moves, and where their stretch stands among the others.
-  struct Loop {
-    Moves moves;
-    std::size_t at = 0;
-    int operation = -1;
-  };
+  int operation_ = -1, piece_ = -1, tooth_ = -1, tool_ = 0;
+  std::size_t in_piece_ = 0;  ///< states of the piece so far
   std::vector<Loop> loops_;
   std::size_t looped_ = 0;
 };

@@ -39,7 +39,7 @@ text::NcDialect words() {
   d.loop.after = {"o{label} endsub"};
   d.loop.call = {"{first_tooth}",
                  "#1={first}",
-                 "o{label+1} while [#1 LT {teeth}]",
+                 "o{label+1} while [#1 LT {end}]",
                  "{pick}",
                  "o{label} call [{turns}*360/{teeth}]",
                  "#1=[#1+1]",

@@ -78,7 +78,7 @@ TEST(MachineStates, TellTheTeethOfALoop) {
   readback::ReadBack read;
   read.copies.copies = true;
   for (int operation = 0; operation < 2; ++operation) {
-    readback::TurnedCopies::Operation copies{operation, kMoves, {}};
+    readback::TurnedCopies::Operation copies{operation, kMoves, {}, {{0, 0, 0}}};
     for (int tooth = 0; tooth < kTeeth; ++tooth) copies.turns.push_back(tooth);
     read.copies.operations.push_back(copies);
     readback::OperationTrace trace;

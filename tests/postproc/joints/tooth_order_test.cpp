@@ -76,12 +76,12 @@ TEST(ToothOrder, StrideIsTheBestOfAll) {
 
 TEST(ToothOrder, TurnsAreCounted) {
   for (const int z : {2, 7, 60, 88}) {
-    EXPECT_EQ(joints::pitches_turned(0, 1, z), z - 1);
+    EXPECT_EQ(joints::pitches_turned(0, z, 1, z), z - 1);
     const int s = joints::spread_stride(z);
     double sum = 0;
     for (int n = 1; n < z; ++n) sum += std::abs(n * s % z - (n - 1) * s % z);
-    EXPECT_EQ(joints::pitches_turned(0, s, z), sum);
-    EXPECT_EQ(joints::pitches_turned(z - 1, s, z), 0);
+    EXPECT_EQ(joints::pitches_turned(0, z, s, z), sum);
+    EXPECT_EQ(joints::pitches_turned(z - 1, z, s, z), 0);
   }
 }
 
