@@ -271,6 +271,11 @@ void OutputDir::discard(std::string_view name) {
   files_.erase(found);
 }
 
+void OutputDir::discard_if(const std::function<bool(std::string_view)>& is_one) {
+  for (std::size_t n = files_.size(); n-- > 0;)
+    if (is_one(files_[n].name)) discard(std::string(files_[n].name));
+}
+
 void OutputDir::discard_all() {
   while (!files_.empty()) discard(std::string(files_.back().name));
   unlock();

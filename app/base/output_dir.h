@@ -59,6 +59,8 @@ class OutputDir {
   [[nodiscard]] const std::string& path() const { return path_; }  ///< as the user wrote it
   /// Drops a file written before (an NC program that turned out not to be safe).
   void discard(std::string_view name);
+  /// All of them whose name `is_one`.
+  void discard_if(const std::function<bool(std::string_view name)>& is_one);
   /// Gives every file its final name, programs last: where one stands, all the rest is there. What stood under the
   /// command's names goes. Then every file is read under its final name and compared with what was written. When
   /// anything fails none of the files is there, and what stood there stands there again. Nothing can be written

@@ -28,6 +28,7 @@ constexpr const char* kDone = ".toothpath-done";  ///< kAside, renamed: the new 
 constexpr const char* kKept = ".toothpath-kept-";    ///< kAside, renamed: complete, becomes `previous`
 constexpr const char* kOlder = ".toothpath-older-";  ///< `previous`, renamed: gives way to kKept
 constexpr std::size_t kMostJournalBytes = 1 << 16;
+constexpr std::size_t kMostDigits = 3;  // of a numbered program
 
 bool exists(const std::string& path) {
   struct stat status {};
@@ -96,12 +97,23 @@ void flush_directory(const std::string& path) {
 OutputNames::OutputNames(const std::vector<std::string>& names) {
   for (const auto& name : names)
     if (name.back() != '.') others_.push_back(name);
+    else if (name.ends_with("#.")) numbered_.push_back(name.substr(0, name.size() - 2));
     else
       for (const auto& extension : controls::program_extensions()) programs_.push_back(name + extension.substr(1));
 }
 
 bool OutputNames::is_program(std::string_view name) const {
-  return std::find(programs_.begin(), programs_.end(), name) != programs_.end();
+  if (std::find(programs_.begin(), programs_.end(), name) != programs_.end()) return true;
+  const std::size_t point = name.find('.');
+  if (numbered_.empty() || point == std::string_view::npos) return false;
+  const auto extensions = controls::program_extensions();
+  if (std::find(extensions.begin(), extensions.end(), name.substr(point)) == extensions.end()) return false;
+  return std::any_of(numbered_.begin(), numbered_.end(), [&](const std::string& head) {
+    if (!name.starts_with(head) || head.size() > point) return false;
+    const std::string_view digits = name.substr(head.size(), point - head.size());
+    return !digits.empty() && digits.size() <= kMostDigits &&
+           std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
+  });
 }
 
 bool OutputNames::contains(std::string_view name) const {
@@ -110,9 +122,19 @@ bool OutputNames::contains(std::string_view name) const {
 
 std::vector<std::string> OutputNames::standing_in(const std::string& directory) const {
   std::vector<std::string> standing;
-  for (const auto* names : {&programs_, &others_})
-    std::copy_if(names->begin(), names->end(), std::back_inserter(standing),
+  const auto add = [&](const std::vector<std::string>& names) {
+    std::copy_if(names.begin(), names.end(), std::back_inserter(standing),
                  [&](const std::string& name) { return exists(directory + "/" + name); });
+  };
+  add(programs_);
+  if (!numbered_.empty()) {
+    const std::size_t before = standing.size();
+    for (std::string& name : entries_of(directory))
+      if (is_program(name) && std::find(programs_.begin(), programs_.end(), name) == programs_.end())
+        standing.push_back(std::move(name));
+    std::sort(standing.begin() + static_cast<std::ptrdiff_t>(before), standing.end());
+  }
+  add(others_);
   return standing;
 }
 

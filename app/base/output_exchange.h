@@ -19,7 +19,7 @@ namespace toothpath::app {
 class OutputNames {
  public:
   /// A name that ends in "." stands for every extension of NC programs ("program."): such files are the programs of the
-  /// command.
+  /// command. One that ends in "#." stands for all with a whole number of 1 to 3 digits there, too ("program_#.").
   explicit OutputNames(const std::vector<std::string>& names);
   [[nodiscard]] bool is_program(std::string_view name) const;
   [[nodiscard]] bool contains(std::string_view name) const;
@@ -27,7 +27,7 @@ class OutputNames {
   [[nodiscard]] std::vector<std::string> standing_in(const std::string& directory) const;
 
  private:
-  std::vector<std::string> programs_, others_;
+  std::vector<std::string> programs_, others_, numbered_;  ///< the last: what stands ahead of the number
 };
 
 class OutputExchange {

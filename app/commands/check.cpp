@@ -1,6 +1,9 @@
 #include "app/commands/check.h"
 
+#include <algorithm>
+#include <cctype>
 #include <optional>
+#include <regex>
 
 #include "app/base/output_dir.h"
 #include "app/job/file.h"
@@ -90,6 +93,23 @@ Status judge_scene(Check& check) {
   return Ok{};
 }
 
+/// What the header of a program says that holds a part of the teeth; empty: it is a whole one.
+std::string part_of_header(std::string_view text) {
+  constexpr std::size_t kHeader = 4096;
+  static const std::regex kPart("PART ([0-9]+ OF [0-9]+): (OPERATION [0-9]+, [A-Z0-9 ]+[A-Z0-9])");
+  const std::string head(text.substr(0, kHeader));
+  std::smatch found;
+  if (!std::regex_search(head, found, kPart)) return {};
+  std::string teeth = found[2];
+  std::transform(teeth.begin(), teeth.end(), teeth.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  std::string which = found[1];
+  which.replace(which.find("OF"), 2, "of");
+  return fmt::format(
+      "by its header this is part {} ({}): it is judged alone, and what the other parts cut is missing. The run that "
+      "made it has proven it beside the whole program",
+      which, teeth);
+}
+
 /// Everything that is asked of the program. Errors: what the reader refuses; a program that is read but not safe is
 /// none.
 Status prove(Check& check) {
@@ -112,6 +132,7 @@ Status prove(Check& check) {
   report.modified = check.gear.process->part().modified;
   if (auto judged = judge_scene(check); !judged) return judged;
   process::note_proof(report, *check.proof);
+  if (std::string part = part_of_header(check.text); !part.empty()) report.warnings.push_back(std::move(part));
   const auto& hash = report.hash;
   report.blocks = hash && hash->fits() && hash->blocks > 0 ? hash->blocks : readback::count_blocks(check.text);
   report.has_acceleration = check.machine.has_acceleration();

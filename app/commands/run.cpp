@@ -12,10 +12,10 @@ namespace toothpath::commands {
 namespace {
 
 std::vector<std::string> run_outputs() {
-  std::vector<std::string> all = {"program.",       "cl.csv",       "report.json",     "report.html",
-                                  "setup.html",     "gear.stl",     "tooth.vtp",       "inspection.csv",
-                                  "inspection.dmi", "limits.json",  "limits.html",     "limits.svg",
-                                  "limits_0.svg",   "limits_1.svg", "correction.json", "program_tools.tbl"};
+  std::vector<std::string> all = {
+      "program.",   "program_#.",   "cl.csv",         "report.json",     "report.html",      "setup.html",
+      "gear.stl",   "tooth.vtp",    "inspection.csv", "inspection.dmi",  "limits.json",      "limits.html",
+      "limits.svg", "limits_0.svg", "limits_1.svg",   "correction.json", "program_tools.tbl"};
   all.insert(all.end(), cad::file_names().begin(), cad::file_names().end());
   return all;
 }

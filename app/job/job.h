@@ -52,6 +52,8 @@ struct ProgramSettings {
   bool spread_teeth = false;   ///< tooth_order = "spread": neighbours are not cut one after the other; else in sequence
   text::TextWishes text;       ///< stops and numbers of blocks
   bool tilted_planes = false;  ///< cuts with a standing tool axis in tilted planes of the control
+  bool split_operations = false;               ///< beside the program one for every operation
+  std::optional<int> teeth_per_program;        ///< .. and of more teeth several
   std::optional<double> contour_tolerance_mm;  ///< that the text allows the control; none: a share of what is left
   std::optional<machines::PoleOption> pole;    ///< instead of post.pole of the machine file
   std::optional<double> pole_angle_rad;        ///< instead of post.pole_angle
@@ -64,6 +66,8 @@ inline constexpr toml::Range kPinionTeeth{5, 1000}, kMoved{-5, 5, " mm"}, kAngle
 inline constexpr toml::Range kTorque{1e-6, 1e9, " N m"};
 /// Numbers of programs: from 8000 on they are the builder's.
 inline constexpr toml::Range kProgramNumber{1, 7999};
+/// Teeth of a part of a program.
+inline constexpr toml::Range kTeethPerProgram{1, 5000};
 /// Contour tolerance of a program.
 inline constexpr toml::Range kContourTolerance{1e-4, 0.1, " mm"};
 /// Numbers of tools.

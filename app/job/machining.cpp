@@ -415,6 +415,12 @@ ProgramSettings read_program_settings(toml::TableReader& table) {
   program.text.stops = static_cast<text::Stops>(std::find(stops.begin(), stops.end(), stop) - stops.begin());
   if (table.word_or("stop_word", {"optional_stop", "block_skip"}, "optional_stop") == "block_skip")
     program.text.stop_word = text::StopWord::block_skip;
+  program.split_operations = table.word_or("split", {"none", "operations"}, "none") == "operations";
+  program.teeth_per_program = table.optional_integer("teeth_per_program", kTeethPerProgram);
+  if (program.teeth_per_program && table.has("split") && !program.split_operations)
+    table.refuse("teeth_per_program",
+                 "split = \"none\" and teeth_per_program = {} contradict each other: leave one of them out",
+                 *program.teeth_per_program);
   program.contour_tolerance_mm = table.optional_number("contour_tolerance", kContourTolerance);
   program.text.restart_numbers = table.boolean_or("restart_numbers", program.text.restart_numbers);
   program.tilted_planes = table.boolean_or("tilted_planes", program.tilted_planes);

@@ -19,6 +19,7 @@ namespace toothpath::process {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t(1) << 30;
+constexpr std::size_t kMostParts = 999;
 constexpr double kLeastAxisBlend = 0.0001;  // deg: the last digit of a tolerance of the rotaries
 constexpr double kMostAxisBlend = 0.01;     // deg, where the contour tolerance is a share of what is left
 constexpr double kBlendShare = 0.15;        // of the gouge tolerance that the control may round corners by unasked
@@ -178,6 +179,75 @@ text::NcHeader header_of(const PostRequest& request, const std::vector<std::stri
   return header;
 }
 
+/// The job states a contour tolerance that its control has no word for.
+std::optional<Diagnostic> no_contour_word(const job::Job& job, const text::NcDialect& dialect) {
+  if (!job.program.contour_tolerance_mm || dialect.blend) return std::nullopt;
+  return located(job, "program.contour_tolerance",
+                 fail("contour_tolerance: the text of \"{}\" says none{}", dialect.name,
+                      dialect.takes_smoothing || !dialect.corner_flow.empty()
+                          ? "; post.corner_tolerance and post.smoothing_* of the machine file state what it leaves"
+                          : ""));
+}
+
+/// What clamps take.
+void note_text_times(joints::AxisProgram& program, const job::Job& job, const text::NcDialect& dialect) {
+  note_clamp_times(program, dialect, job.program.text.stops == text::Stops::teeth);
+}
+
+/// Programs that hold a part each, written and read back: numbers and names behind those of the whole program.
+Result<std::vector<PostedPart>> post_parts(joints::AxisProgram& whole, const text::NcDialect& dialect,
+                                           text::NcHeader header, int first_number, const PostRequest& request,
+                                           app::OutputDir& output) {
+  const job::Job& job = request.job;
+  std::vector<PostedPart> posted;
+  const std::optional<int>& teeth = job.program.teeth_per_program;
+  if (!teeth && !job.program.split_operations) return posted;
+  const int last_number = static_cast<int>(job::kProgramNumber.high);
+  const char* key = teeth ? "program.teeth_per_program" : "program.split";
+  const std::vector<joints::ProgramPart> parts = joints::parts_of(whole, teeth.value_or(request.teeth));
+  if (parts.size() > kMostParts)
+    return located(job, key, fail("{} programs, {} at most: more teeth in each", parts.size(), kMostParts));
+  const joints::PartMaker maker(whole);
+  header.program_number = first_number;
+  const std::size_t digits = std::to_string(parts.size()).size();
+  for (const joints::ProgramPart& part : parts) {
+    joints::AxisProgram program = maker.make(part);
+    estimate_times(program, request.machine);
+    note_text_times(program, job, dialect);
+    header.name_end = fmt::format("_{:0{}}", part.number, digits);
+    if (has_program_number(dialect) && header.program_number > last_number)
+      return located(job, key,
+                     fail("part {} of {} would be program O{}, above O{}: a smaller program.number, or more "
+                          "teeth in each part",
+                          part.number, part.count, header.program_number, last_number));
+    auto text = text::write_nc(program, dialect, header);
+    if (!text) return located(job, key, text.error());
+    PostedPart out{part,
+                   "program" + header.name_end + dialect.extension,
+                   text::name_on_control(dialect, header),
+                   {},
+                   text->blocks,
+                   {},
+                   0,
+                   0};
+    const bool timed = program.has_acceleration;
+    out.feed_minutes = timed ? program.accelerated.feed : program.feed_minutes;
+    out.total_minutes =
+        (timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes) + program.clamp_minutes;
+    for (const joints::AxisOperation& op : program.operations)
+      if (out.tools.empty() || out.tools.back() != op.tool_number) out.tools.push_back(op.tool_number);
+    if (request.machine.tool_change_min)
+      out.total_minutes += double(out.tools.size()) * *request.machine.tool_change_min;
+    header.program_number += text->numbers;
+    if (const auto written = output.write(out.file, text->text); !written) return written.error();
+    auto bytes = output.read_back(out.file);
+    if (!bytes) return bytes.error();
+    out.text = std::move(bytes.value());
+    posted.push_back(std::move(out));
+  }
+  return posted;
+}
+
 double counted(const joints::AxisProgram& program, const text::NcDialect& dialect, const text::NcHeader& header,
                double radius) {
   return text::granted_blend_mm(program, dialect, header) + radius * text::granted_blend_rad(program, dialect, header);
@@ -228,12 +298,7 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   const std::optional<joints::ProgramRestart>& restart = request.restart;
   const auto dialect = controls::dialect_of(machine);
   if (!dialect) return located(job, "machine.file", dialect.error());
-  if (job.program.contour_tolerance_mm && !dialect->blend)
-    return located(job, "program.contour_tolerance",
-                   fail("contour_tolerance: the text of \"{}\" says none{}", dialect->name,
-                        dialect->takes_smoothing || !dialect->corner_flow.empty()
-                            ? "; post.corner_tolerance and post.smoothing_* of the machine file state what it leaves"
-                            : ""));
+  if (auto refused = no_contour_word(job, *dialect)) return *refused;
   auto program = clock.run("axis program", [&] {
     joints::AxisOptions options = controls::axis_options(*dialect, machine);
     options.pack_teeth = true;
@@ -245,10 +310,10 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   PostedProgram posted;
   posted.axes = std::move(program.value());
 
-  note_clamp_times(posted.axes, *dialect, job.program.text.stops == text::Stops::teeth);
   const text::NcHeader header = header_of(request, assumed);
   text::note_corners(posted.axes, *dialect, header);
   if (posted.axes.corner_tolerance_mm > 0) estimate_times(posted.axes, machine);
+  note_text_times(posted.axes, job, *dialect);
   auto text = clock.run("NC text", [&] { return text::write_nc(posted.axes, *dialect, header); });
   if (!text) return located(job, "machine.file", text.error());
   posted.blocks = text->blocks;
@@ -256,12 +321,19 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   posted.file = "program" + dialect->extension;
   posted.name_on_control = text::name_on_control(*dialect, header);
   std::string whole = std::move(text->text);
+  if (!restart) {  // ahead of the program, which gets its name last
+    auto parts = clock.run("NC text", [&] {
+      return post_parts(posted.axes, *dialect, header, header.program_number + text->numbers, request, output);
+    });
+    if (!parts) return parts.error();
+    posted.parts = std::move(parts.value());
+  }
   if (restart) {
     auto part = joints::program_from(posted.axes, restart->operation, restart->tooth);
     if (!part) return part.error();
     posted.restarted = std::move(part.value());
     estimate_times(*posted.restarted, machine);
-    note_clamp_times(*posted.restarted, *dialect, job.program.text.stops == text::Stops::teeth);
+    note_text_times(*posted.restarted, job, *dialect);
     text = text::write_nc(*posted.restarted, *dialect, header);
     if (!text) return located(job, "machine.file", text.error());
     posted.blocks = text->blocks;
@@ -280,7 +352,11 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
 }
 
 void discard_program(app::OutputDir& output) {
-  for (const auto& extension : controls::program_extensions()) output.discard("program" + extension);
+  const auto extensions = controls::program_extensions();
+  output.discard_if([&](std::string_view name) {
+    return name.starts_with("program") &&
+           std::any_of(extensions.begin(), extensions.end(), [&](const std::string& e) { return name.ends_with(e); });
+  });
 }
 
 Result<std::string> read_program_file(const std::string& path) { return toml::read_input_file(path, kMostBytes); }

@@ -34,6 +34,14 @@ void note_proof(report::RunReport& report, const ProgramProof& proof);
 [[nodiscard]] std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& program,
                                                              std::span<const path::ClPath* const> paths);
 
+/// One of the programs that hold a part each: on the disk, and what lies there.
+struct PostedPart {
+  joints::ProgramPart part;
+  std::string file, name_on_control, text;
+  std::size_t blocks = 0;
+  std::vector<int> tools;                      ///< T, in the order of their use
+  double feed_minutes = 0, total_minutes = 0;  ///< with the accelerations of the axes where they are stated
+};
 /// An NC program that this run has made: on the disk, and what lies there.
 struct PostedProgram {
   joints::AxisProgram axes;
@@ -43,7 +51,8 @@ struct PostedProgram {
   std::size_t blocks = 0;
   std::optional<joints::AxisProgram> restarted;  ///< of the file, where it begins in the middle
   std::string restart_text;                      ///< the bytes of that file as read back
-  double blend_mm = 0;  ///< how far the control may leave the corners; 0: the dialect has no such word
+  double blend_mm = 0;            ///< how far the control may leave the corners; 0: the dialect has no such word
+  std::vector<PostedPart> parts;  ///< beside the program, where the job asks for them
 };
 /// What a program is made for. Everything named must outlive the call.
 struct PostRequest {

@@ -150,6 +150,10 @@ constexpr Meaning kJobMeanings[] = {
     {"program", "Numbers and order of the program."},
     {"program.number", "O number of the program; left out: made of the job's name."},
     {"program.tooth_order", "Teeth one after the other, or neighbours apart in time."},
+    {"program.split",
+     "`operations`: beside the program one for every operation, `program_1` and so on, to be run one after the other."},
+    {"program.teeth_per_program",
+     "The same, and of an operation with more teeth several: each has so many at most, in the order of the teeth."},
     {"program.contour_tolerance",
      "How far the text allows the control to leave the path (CYCLE832, cycle 32); counts in the proof. Left out: the "
      "share of what is left of the gouge tolerance with which the time is least."},

@@ -43,6 +43,21 @@ Json place_json(const proof::WorstPlace& place) {
           {"point", vector_json(place.point)}};
 }
 
+/// Programs that hold a part each; tools by T, minutes of each alone.
+void add_parts(Json& json, const RunReport& r) {
+  for (const PartReport& p : r.parts)
+    json["parts"].push_back({{"file", p.file},
+                             {"sha256", p.sha256},
+                             {"bytes", p.bytes},
+                             {"blocks", p.blocks},
+                             {"name_on_control", p.name_on_control},
+                             {"op", p.part.operation},
+                             {"places", {p.part.first_place, p.part.end_place}},
+                             {"tools", p.tools},
+                             {"cutting_minutes", p.feed_minutes},
+                             {"total_minutes", p.total_minutes}});
+}
+
 void add_correction_rows(Json& json, const RunReport& r) {
   if (!r.correction.empty()) {
     Json flanks = Json::array();
@@ -91,6 +106,7 @@ void add_correction(Json& json, const RunReport& r) {
 }
 
 void add_proof(Json& json, const RunReport& r) {
+  add_parts(json, r);
   if (r.gouge) {
     json["gouge_um"] = {{"measured", app::um(r.gouge->measured_mm)},
                         {"bound", app::um(r.gouge->bound_mm)},

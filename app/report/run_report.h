@@ -37,6 +37,16 @@ struct OperationReport {
   [[nodiscard]] double minutes() const { return feed_minutes + rapid_minutes; }
 };
 
+/// A program that holds a part of the teeth, beside the whole one.
+struct PartReport {
+  joints::ProgramPart part;
+  std::string type;  ///< of the operation
+  std::string file, name_on_control, sha256;
+  std::size_t bytes = 0, blocks = 0;
+  std::vector<int> tools;                      ///< T, in the order of their use
+  double feed_minutes = 0, total_minutes = 0;  ///< of this program
+};
+
 /// A flank that was corrected by a measurement.
 struct CorrectionRow {
   int zone = 0, side = 1;
@@ -142,6 +152,7 @@ struct RunReport {
   std::optional<BlockTimes> block_times;             ///< none where no program was posted
   int teeth = 0, tooth_stride = 1;                   ///< of the program: place n cuts tooth n * stride mod teeth
   std::optional<joints::ProgramRestart> restart;     ///< the program begins there
+  std::vector<PartReport> parts;                     ///< programs beside the whole one, in their order
   std::optional<restart::RestartMenu> restart_menu;  ///< where it can be taken up again
   std::vector<LengthTolerance> length_tolerances;
   std::vector<Section> sections;  ///< tables for page and set-up sheet: app/report/sections

@@ -193,6 +193,10 @@ std::string summary_table(const RunReport& report, bool color) {
   if (!report.assumed.empty()) row(out, "assumed", machines::counted_keys(report.assumed));
   if (!report.program_file.empty())
     row(out, "program", fmt::format("{}, {} blocks", report.program_file, report.blocks));
+  if (report.verified && !report.parts.empty())
+    row(out, "programs in parts",
+        fmt::format("{} to {}: to be run one after the other in the place of {}", report.parts.front().file,
+                    report.parts.back().file, report.program_file));
   made_rows(out, report);
   for (const auto& warning : report.warnings) row(out, "warning", warning);
   if (report.command == "surface")

@@ -172,6 +172,13 @@ struct ProgramRestart {
   int operation = 0, tooth = 0;
 };
 
+/// One of several programs that are run one after the other: teeth of one operation.
+struct ProgramPart {
+  int number = 1, count = 1;  ///< the first is 1
+  int operation = 0;
+  int first_place = 0, end_place = 0;  ///< in the order of the teeth
+};
+
 struct AxisProgram {
   WordFormat format;
   std::array<char, 5> letters{};   ///< X Y Z and the two rotaries; 0: no such axis
@@ -181,6 +188,7 @@ struct AxisProgram {
   const char* no_loop = "";               ///< why every tooth is written out though the options ask for a loop
   int tooth_stride = 1;                   ///< as in the options
   std::optional<ProgramRestart> restart;  ///< the program begins there, not at its beginning
+  std::optional<ProgramPart> part;        ///< it holds that alone
   int index_axis = -1;                    ///< 3 or 4: which word is shifted by the index
   int index_sign = 1;                     ///< word of tooth k = word + index_sign * k * 360 / z
   machines::TcpMode tcp = machines::TcpMode::none;  ///< how the blocks of a cut are meant

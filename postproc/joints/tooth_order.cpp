@@ -115,4 +115,36 @@ Result<AxisProgram> program_from(AxisProgram program, int operation, int tooth) 
   return program;
 }
 
+std::vector<ProgramPart> parts_of(const AxisProgram& program, int most_teeth) {
+  std::vector<ProgramPart> parts;
+  for (const AxisOperation& op : program.operations) {
+    if (!parts.empty() && parts.back().operation == op.operation) continue;
+    for (int first = 0; first < program.teeth; first += most_teeth)
+      parts.push_back(
+          {static_cast<int>(parts.size()) + 1, 0, op.operation, first, std::min(program.teeth, first + most_teeth)});
+  }
+  for (ProgramPart& part : parts) part.count = static_cast<int>(parts.size());
+  return parts;
+}
+
+PartMaker::PartMaker(AxisProgram& program)
+    : program_(program), operations_(std::move(program.operations)), followed_(std::move(program.followed)) {}
+
+PartMaker::~PartMaker() {
+  program_.operations = std::move(operations_);
+  program_.followed = std::move(followed_);
+}
+
+AxisProgram PartMaker::make(const ProgramPart& part) const {
+  AxisProgram out = program_;
+  out.part = part;
+  for (const AxisOperation& op : operations_) {
+    const int first = std::max(part.first_place, op.first_place);
+    const int end = std::min(part.end_place, op.end_of(out.teeth));
+    if (op.operation == part.operation && first < end) out.operations.push_back(operation_between(op, first, end, out));
+  }
+  sum_times(out);
+  return out;
+}
+
 }  // namespace toothpath::joints

@@ -39,4 +39,24 @@ void sum_times(AxisProgram& program);
 /// such operation or tooth, with what there is.
 [[nodiscard]] Result<AxisProgram> program_from(AxisProgram program, int operation, int tooth);
 
+/// The programs that the operations of `program` make one by one, and of more than `most_teeth` several: their places
+/// in the order of the whole. @param most_teeth  above 0
+[[nodiscard]] std::vector<ProgramPart> parts_of(const AxisProgram& program, int most_teeth);
+/// Takes the parts of a program out one by one; what does not differ between them is held once.
+class PartMaker {
+ public:
+  /// @param program  must outlive this, and is as it was when this is gone
+  explicit PartMaker(AxisProgram& program);
+  ~PartMaker();
+  PartMaker(const PartMaker&) = delete;
+  PartMaker& operator=(const PartMaker&) = delete;
+  /// The same program with the teeth of one part alone; ranges and bounds stay those of the whole.
+  [[nodiscard]] AxisProgram make(const ProgramPart& part) const;
+
+ private:
+  AxisProgram& program_;
+  std::vector<AxisOperation> operations_;
+  std::vector<path::ClPath> followed_;
+};
+
 }  // namespace toothpath::joints

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "machines/assumed.h"
+#include "postproc/joints/tooth_order.h"
 #include "postproc/numbers/comment.h"
 #include "postproc/numbers/fixed_point.h"
 #include "postproc/text/corners.h"
@@ -28,7 +29,7 @@ NcLines::Values program_values(const joints::AxisProgram& program, const NcDiale
   NcLines::Values values;
   values["number"] = std::to_string(header.program_number);
   values["name"] = numbers::comment_text(header.job_name).substr(0, 32);
-  values["id"] = program_id(header.job_name);
+  values["id"] = program_id(header.job_name, header.name_end);
   values["offset"] = program.work_offset;
   if (dialect.datum != nullptr) values["datum"] = std::to_string(dialect.datum(program.work_offset));
   const CornerWords corners = corner_words(program, dialect, header);
@@ -150,6 +151,13 @@ std::vector<std::string> order_comments(const joints::AxisProgram& program) {
   if (program.restart) {
     out.push_back(fmt::format("RESTART AT OPERATION {} TOOTH {}", program.restart->operation, program.restart->tooth));
     out.emplace_back("WHAT THE WHOLE PROGRAM CUTS BEFORE THAT IS TAKEN AS DONE");
+  }
+  if (const auto& part = program.part) {
+    out.push_back(fmt::format("PART {} OF {}: OPERATION {}, {}", part->number, part->count, part->operation,
+                              teeth_text(program, part->first_place, part->end_place)));
+    if (part->number > 1) out.emplace_back("WHAT THE PARTS BEFORE CUT IS TAKEN AS DONE");
+  }
+  if (program.restart || program.part) {
     const bool timed = program.has_acceleration;
     out.push_back(fmt::format(
         "RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING{}",
@@ -159,8 +167,16 @@ std::vector<std::string> order_comments(const joints::AxisProgram& program) {
   return out;
 }
 
+std::string teeth_text(const joints::AxisProgram& program, int first_place, int end_place) {
+  const char* what = program.tooth_stride == 1 ? "TEETH" : "PLACES";
+  if (end_place - first_place == program.teeth) return "ALL TEETH";
+  if (end_place - first_place == 1)
+    return fmt::format("TOOTH {}", joints::tooth_of_place(first_place, program.tooth_stride, program.teeth));
+  return fmt::format("{} {} TO {}", what, first_place, end_place - 1);
+}
+
 std::string first_tooth_comment(const joints::AxisProgram& program, const joints::AxisOperation& operation) {
-  const int first = operation.end_place < 0 ? 0 : operation.first_place;
+  const int first = operation.end_place < 0 && !program.part ? 0 : operation.first_place;
   const int last = operation.end_of(program.teeth) - 1;
   if (program.tooth_stride == 1) return fmt::format("FIRST TOOTH, {} TO {}", first, last);
   return fmt::format("FIRST TOOTH BY ITS PLACE, {} TO {}: TOOTH = PLACE * {} MOD {}", first, last, program.tooth_stride,
@@ -246,7 +262,7 @@ std::string NcLines::numbered(std::string_view text) {
 
 std::string name_on_control(const NcDialect& dialect, const NcHeader& header) {
   if (has_program_number(dialect)) return fmt::format("O{}", header.program_number);
-  std::string name = program_id(header.job_name);
+  std::string name = program_id(header.job_name, header.name_end);
   if (dialect.name_begins_with_two_letters && name.size() > 1 && std::isdigit(static_cast<unsigned char>(name[1])))
     name.insert(1, "_");
   name = name.substr(0, kLongestName) + dialect.extension;
@@ -254,14 +270,14 @@ std::string name_on_control(const NcDialect& dialect, const NcHeader& header) {
   return name;
 }
 
-std::string program_id(std::string_view text) {
+std::string program_id(std::string_view text, std::string_view end) {
   std::string out;
   for (const char c : numbers::comment_text(text).substr(0, kLongestName)) {
     const bool letter = c >= 'A' && c <= 'Z', digit = c >= '0' && c <= '9';
     out += letter || digit ? c : '_';
   }
   if (out.empty() || out[0] < 'A' || out[0] > 'Z') out.insert(0, "P");
-  return out.substr(0, kLongestName);
+  return out.substr(0, kLongestName - std::min(end.size(), kLongestName)) + std::string(end);
 }
 
 }  // namespace toothpath::text

@@ -66,5 +66,7 @@ class NcLines {
 /// Names the line behind it: where the operator may set another first tooth.
 [[nodiscard]] std::string first_tooth_comment(const joints::AxisProgram& program,
                                               const joints::AxisOperation& operation);
+/// "TEETH 12 TO 23", in the spread order "PLACES 12 TO 23", "TOOTH 5", "ALL TEETH".
+[[nodiscard]] std::string teeth_text(const joints::AxisProgram& program, int first_place, int end_place);
 
 }  // namespace toothpath::text

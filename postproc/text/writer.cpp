@@ -478,6 +478,7 @@ class Writer {
     NcText result;
     result.body_hash = fnv1a(out_.text());
     result.blocks = out_.blocks();
+    result.numbers = 1 + (has_subprograms() ? bodies(operations()) : 0);
     for (const auto& l : dialect_.frame_end) result.blocks += l == "%" ? 0 : 1;
     const std::string hash = fmt::format("HASH {:016X} BLOCKS {}", result.body_hash, result.blocks);
     std::string body;  // of a long program there is one copy

@@ -22,6 +22,7 @@ struct NcHeader {
   std::string machine_name;
   std::vector<std::string> assumed;  ///< non-empty: a warning, keys of one table in one line
   int program_number = 1001;         ///< O word; the sub-programs have the numbers behind it
+  std::string name_end;              ///< of a part's name, behind that of the job: "_2"
   double blend_mm =
       0.0003;  ///< how far the control may leave a corner: counts as deviation of the machine in every proof
   double blend_axis_deg =
@@ -36,6 +37,7 @@ struct NcHeader {
 struct NcText {
   std::string text;        ///< ASCII, LF, last line ended
   std::size_t blocks = 0;  ///< lines that are not comments, empty or %
+  int numbers = 1;         ///< of programs that stand in the text: itself and its sub-programs
   std::uint64_t body_hash =
       0;  ///< FNV-1a over everything between the header comments and the last comment, without block numbers
 };
@@ -61,7 +63,8 @@ void note_corners(joints::AxisProgram& program, const NcDialect& dialect, const 
 /// stored under the name of the output would replace each other.
 [[nodiscard]] std::string name_on_control(const NcDialect& dialect, const NcHeader& header);
 
-/// Text as the name of a program: letters, digits and _, at most 24, beginning with a letter.
-[[nodiscard]] std::string program_id(std::string_view text);
+/// Text as the name of a program: letters, digits and _, at most 24, beginning with a letter; `end` of it counts and
+/// stays.
+[[nodiscard]] std::string program_id(std::string_view text, std::string_view end = {});
 
 }  // namespace toothpath::text

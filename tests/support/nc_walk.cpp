@@ -145,7 +145,8 @@ class Walker {
   std::smatch found_;
   bool said_ = false, rapid_ = false, motion_known_ = false, tip_ = false, length_ = false, metric_ = false;
   int tool_ = 0, ready_ = 0;
-  double turned_ = 0;
+  double turned_ = 0, feed_ = 0;
+  bool inverse_ = false;
   std::array<double, 3> zero_{};
   bool freezes_ = false;
 
@@ -165,6 +166,8 @@ class Walker {
     next_.frozen = freezes_ && tip_;
     next_.tool = tool_;
     next_.length = length_;
+    next_.feed = feed_;
+    next_.inverse = inverse_;
     walk_.moves.push_back(next_);
   }
 };
@@ -268,6 +271,7 @@ class IsoWalker : public Walker {
     if (letter == 'M') return code_m(text);
     if (letter == 'T') return ready_ = std::stoi(text), true;
     if (letter == 'N') return true;
+    if (letter == 'F') feed_ = number(text);
     if (letter == 'H' || letter == 'F' || letter == 'S') return std::isfinite(number(text));
     return set_axis(letter, number(text));
   }
@@ -276,6 +280,7 @@ class IsoWalker : public Walker {
                                                         {"93", 0}, {"94", 0}, {"54", 0}, {"61", 0}, {"69", 2}};
     if (g == "0" || g == "1") return rapid_ = g == "0", motion_known_ = true;
     if (g == "21") return metric_ = true;
+    if (g == "93" || g == "94") inverse_ = g == "93";
     if (g == "53") return next_.machine = true;
     if (g == "43") return length_ = true;
     if (g == "43.4" && !linuxcnc_) return length_ = tip_ = true;
@@ -365,6 +370,8 @@ class SiemensWalker : public Walker {
       else if (w.compare(1, 1, "=") == 0) set_axis(w[0], number(w.substr(2)));
       else if (std::string("XYZ").find(w[0]) != std::string::npos) set_axis(w[0], number(w.substr(1)));
       else if (!matches(w, harmless)) return false;
+      if (w == "G93" || w == "G94") inverse_ = w == "G93";
+      if (w[0] == 'F') feed_ = number(w.substr(1));
     }
     if (said == 3) next_.direction = direction;
     return said == 0 || said == 3;
@@ -433,6 +440,7 @@ class HeidenhainWalker : public Walker {
       else if (w[0] == 'T') direction.at(std::size_t(w[1] - 'X')) = number(w.substr(2)), ++said;
       else if (std::string("XYZABC").find(w[0]) != std::string::npos) set_axis(w[0], number(w.substr(1)));
       else if (!matches(w, harmless)) return false;
+      if (w[0] == 'F' && w != "FMAX") feed_ = number(w.substr(1));
     }
     if (with_vector) next_.direction = direction;
     return said == (with_vector ? 3 : 0);
@@ -461,6 +469,7 @@ class AptWalker : public Walker {
     if (code == "MULTAX/ON") return tip_ = true;
     if (code == "RAPID") return once_ = true;
     if (code == "END") return walk_.ended = true;
+    if (code.rfind("FEDRAT/", 0) == 0) feed_ = std::stod(code.substr(7));
     if (code.rfind("GOTO/", 0) != 0) {
       if (!matches(code, tool)) return matches(code, harmless);
       tool_ = std::stoi(found_[1]);

@@ -21,6 +21,8 @@ struct NcMove {
   bool frozen = false;                             ///< X Y Z name places of the work as it stood when `tip` began
   int tool = 0;                                    ///< in the spindle, 0: none
   bool length = false;                             ///< the length of the tool counts
+  double feed = 0;                                 ///< F in force, 0: none was said
+  bool inverse = false;                            ///< F is of inverse time
   std::array<std::optional<double>, 3> linear;     ///< X Y Z
   std::array<std::optional<double>, 3> rotary;     ///< A B C
   std::optional<std::array<double, 3>> direction;  ///< tool vector, tip to holder

@@ -7,6 +7,7 @@
 #include "app/process/flow/graphics_blank.h"
 #include "app/process/flow/machine_moves.h"
 #include "app/process/flow/machine_picture.h"
+#include "app/process/flow/parts.h"
 #include "app/process/flow/registry.h"
 #include "app/process/flow/restart.h"
 #include "app/process/ledger_sources.h"
@@ -154,6 +155,16 @@ class Attempts {
   process::PostRequest request_;
 };
 
+/// The programs that hold a part each, where the job asks for them.
+Status prove_parts(Run& run, const proof::ProofLimits& limits, const process::PostedProgram& posted,
+                   const process::ProgramText& whole) {
+  if (posted.parts.empty()) return Ok{};
+  const auto bodies = bodies_in_machine(run.job, run.machine, *run.gear.process, nullptr);
+  if (!bodies) return bodies.error();
+  const auto judge = [&] { return judge_of(run.machine, *bodies, run.job, limits.clearance_mm); };
+  return note_parts(run.report, posted, whole, run.milling->check(), judge, run.clock);
+}
+
 /// The program of the run, proven. Nothing: done, and `report.reasons` says whether it is safe.
 std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& limits, app::OutputDir& output) {
   const auto paths = run.paths();
@@ -171,6 +182,9 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
   const process::ProgramText whole{posted.text, file, run.job, run.machine};
   if (auto done = note_restart(run.report, posted, whole, run.milling->check(), run.lines, run.clock); !done)
     return done.error();
+  if (auto done = prove_parts(run, limits, posted, whole); !done) return done.error();
+  if (run.restart && (run.job.program.teeth_per_program || run.job.program.split_operations))
+    run.report.warnings.emplace_back("the program from the restart on is one: parts of it are not written");
   run.program_text = std::move(posted.restarted ? posted.restart_text : posted.text);
   run.report.ledger = run.milling->ledger(program, proof, posted.blend_mm);
   process::note_cutting_forces(run.report, run.job);
@@ -184,6 +198,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
     return attempts.refusal(*made);
   }
   process::note_verified(run.report, posted.file, run.program_text);
+  for (const report::PartReport& part : run.report.parts) run.report.files.push_back(part.file);
   run.report.name_on_control = posted.name_on_control;
   return std::nullopt;
 }
@@ -248,6 +263,8 @@ StagesOutcome run_stages(const job::Job& job, const proof::ProofLimits& limits, 
                          const process::FlankGrid& grid, bool with_page) {
   Run run(quiet);
   run.job = job;
+  run.job.program.split_operations = false;  // the parts are for people
+  run.job.program.teeth_per_program.reset();
   StagesOutcome outcome;
   outcome.errors = prepare(run, {});
   if (!outcome.errors.empty()) return outcome;

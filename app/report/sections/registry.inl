@@ -1,4 +1,5 @@
 // Every section, in the order of the set-up sheet: the name of its file and of the function in it.
+SECTION(parts)
 SECTION(travels)
 SECTION(modifications)
 SECTION(machine_moves)

@@ -26,6 +26,9 @@ struct SectionInput {
 /// Those that have something to say, in the order of registry.inl.
 [[nodiscard]] std::vector<report::Section> sections_of(const SectionInput& input);
 
+/// Teeth of the places [first, end) of the order: "all teeth", "tooth 3", "teeth 12 to 23", spread "teeth 0, 31, 2".
+[[nodiscard]] std::string teeth_words(const report::RunReport& report, int first_place, int end_place);
+
 /// Meshes of stock and fixture: which, where, how far from the finished gear. Of `check`, which has no axis program.
 [[nodiscard]] report::Section scene(const report::RunReport& report);
 /// How near the bodies of the machine come to each other; empty where it states none. Of `check`.

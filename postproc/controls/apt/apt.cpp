@@ -113,7 +113,7 @@ class AptWriter {
     result.blocks = out_.blocks() + 4;
     const std::string body = std::move(out_.text());
     out_.text().clear();
-    out_.line(fmt::format("PARTNO/{}", text::program_id(header_.job_name)));
+    out_.line(fmt::format("PARTNO/{}", text::program_id(header_.job_name, header_.name_end)));
     out_.line("UNITS/MM");
     out_.comment(numbers::comment_text("JOB " + header_.job_name));
     out_.comment(numbers::comment_text("MACHINE " + header_.machine_name));

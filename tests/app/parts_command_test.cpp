@@ -1,0 +1,143 @@
+// Programs in parts, from outside: which files there are, what they say, what `check` says of a part alone, what stays
+// of an earlier run, what is refused.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/app/program.h"
+
+namespace toothpath::test {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::string kSpurQuick = kSamples + "/spur_quick.toml";
+
+/// The sample with more keys of its first tool, another machine, and a table [program].
+std::string job_with(const TestDir& dir, const std::string& program, const std::string& tool = "",
+                     const std::string& machine = "") {
+  std::string text = file_text(kSpurQuick);
+  const auto put = [&](const std::string& at, const std::string& by) {
+    const std::size_t found = text.find(at);
+    EXPECT_NE(found, std::string::npos) << at;
+    text.replace(found, at.size(), by);
+  };
+  if (!tool.empty()) put("stick_out = 16.0\n", "stick_out = 16.0\n" + tool + "\n");
+  if (!machine.empty()) put("file = \"xyzac_large.toml\"", "accept_assumed = true\nfile = \"" + machine + "\"");
+  if (!program.empty()) text += "\n[program]\n" + program + "\n";
+  write_file(dir / "job.toml", text);
+  return dir / "job.toml";
+}
+
+std::set<std::string> programs_in(const std::string& folder) {
+  std::set<std::string> out;
+  for (const std::string& name : names_in(folder))
+    if (name.starts_with("program") && !name.ends_with(".tbl")) out.insert(name);
+  return out;
+}
+
+Json report_in(const std::string& folder) { return Json::parse(file_text(folder + "/report.json")); }
+
+std::string said(const Json& report, const char* list) {
+  std::string out;
+  for (const auto& text : report[list]) out += text.get<std::string>() + "\n";
+  return out;
+}
+
+TEST(PartsCommand, EveryPartIsAProgramOfItsOwnAndNoneStaysBehind) {
+  const TestDir dir;
+  const std::string out = dir / "out";
+  const Finished run = run_program({"run", job_with(dir, "teeth_per_program = 25"), "--out", out});
+  ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+  const std::set<std::string> all = {"program.ngc",   "program_1.ngc", "program_2.ngc", "program_3.ngc",
+                                     "program_4.ngc", "program_5.ngc", "program_6.ngc"};
+  EXPECT_EQ(programs_in(out), all);
+  EXPECT_NE(run.out.find("program_1.ngc to program_6.ngc"), std::string::npos) << run.out;
+  const Json report = report_in(out);
+  ASSERT_EQ(report["parts"].size(), 6U);
+  double cutting = 0;
+  for (std::size_t n = 0; n < 6; ++n) {
+    const Json& part = report["parts"][n];
+    EXPECT_EQ(part["file"], fmt::format("program_{}.ngc", n + 1));
+    EXPECT_EQ(part["op"], n < 3 ? 0 : 1);
+    EXPECT_EQ(part["places"], (Json::array({25 * (n % 3), std::min<std::size_t>(60, 25 * (n % 3) + 25)})));
+    EXPECT_EQ(part["tools"], Json::array({1}));
+    cutting += part["cutting_minutes"].get<double>();
+    const std::string text = file_text(out + "/" + part["file"].get<std::string>());
+    EXPECT_EQ(text.size(), part["bytes"].get<std::size_t>());
+    EXPECT_NE(text.find(fmt::format("(PART {} OF 6: OPERATION {}, TEETH {} TO {})", n + 1, n < 3 ? 0 : 1, 25 * (n % 3),
+                                    n % 3 == 2 ? 59 : 25 * (n % 3) + 24)),
+              std::string::npos);
+    EXPECT_NE(text.find("T1"), std::string::npos);
+    EXPECT_LE(std::count(text.begin(), text.begin() + std::ptrdiff_t(text.find("G21")), '\n'), 24);
+  }
+  EXPECT_NEAR(cutting, report["cutting_minutes"].get<double>(), 1e-6 * cutting);
+  const std::string sheet = file_text(out + "/setup.html");
+  for (const char* text : {"Programs in parts", "program_4.ngc", "parts 1 to 3"})
+    EXPECT_NE(sheet.find(text), std::string::npos) << text;
+  // Alone a part leaves what the others cut.
+  const Finished check = run_program({"check", dir / "job.toml", out + "/program_5.ngc", "--out", dir / "check"});
+  EXPECT_EQ(check.exit_code, 1);
+  const Json alone = report_in(dir / "check");
+  EXPECT_NE(said(alone, "warnings").find("this is part 5 of 6 (operation 1, teeth 25 to 49)"), std::string::npos)
+      << said(alone, "warnings");
+  EXPECT_EQ(alone["conditions"]["hash"], "fits");
+  // Fewer parts, then none: those of before are where the rest of that run is.
+  ASSERT_EQ(run_program({"run", job_with(dir, "split = \"operations\""), "--out", out, "--quiet"}).exit_code, 0);
+  EXPECT_EQ(programs_in(out), (std::set<std::string>{"program.ngc", "program_1.ngc", "program_2.ngc"}));
+  EXPECT_EQ(programs_in(out + "/previous"), all);
+  ASSERT_EQ(run_program({"run", kSpurQuick, "--out", out, "--quiet"}).exit_code, 0);
+  EXPECT_EQ(programs_in(out), (std::set<std::string>{"program.ngc"}));
+  EXPECT_EQ(programs_in(out + "/previous"), (std::set<std::string>{"program.ngc", "program_1.ngc", "program_2.ngc"}));
+  // A restart is one program to the end.
+  const Finished restart =
+      run_program({"run", job_with(dir, "teeth_per_program = 25"), "--restart", "1:30", "--out", out});
+  ASSERT_EQ(restart.exit_code, 0) << restart.err;
+  EXPECT_EQ(programs_in(out), (std::set<std::string>{"program.ngc"}));
+  EXPECT_NE(restart.out.find("parts of it are not written"), std::string::npos) << restart.out;
+}
+
+TEST(PartsCommand, NothingStaysOfARunThatIsNotVerified) {
+  const TestDir dir;
+  std::string text = file_text(job_with(dir, "teeth_per_program = 30"));
+  const std::string tolerance = "gouge_tolerance = 0.002";
+  text.replace(text.find(tolerance), tolerance.size(), "gouge_tolerance = 0.00001");
+  write_file(dir / "strict.toml", text);
+  EXPECT_EQ(run_program({"run", dir / "strict.toml", "--out", dir / "out", "--quiet"}).exit_code, 1);
+  EXPECT_TRUE(programs_in(dir / "out").empty());
+}
+
+TEST(PartsCommand, NumbersFollowOneAnother) {
+  const TestDir dir;
+  const std::string job = job_with(dir, "number = 1200\nteeth_per_program = 20", "", "fanuc_ac");
+  const Finished run = run_program({"run", job, "--out", dir / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+  std::set<std::string> numbers;
+  std::size_t said = 0;
+  const Json report = report_in(dir / "out");
+  ASSERT_EQ(report["parts"].size(), 6U);
+  for (const std::string& name : programs_in(dir / "out")) {
+    std::istringstream lines(file_text(dir / ("out/" + name)));
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with("O")) {
+        numbers.insert(line.substr(0, 5));
+        ++said;
+      }
+  }
+  EXPECT_EQ(numbers.size(), said) << "a number stands in two programs";
+  EXPECT_TRUE(numbers.contains("O1200"));
+  std::string before = "O1200";
+  for (const Json& part : report["parts"]) {
+    EXPECT_GT(part["name_on_control"].get<std::string>(), before);
+    before = part["name_on_control"].get<std::string>();
+  }
+  const Finished high = run_program(
+      {"run", job_with(dir, "number = 7995\nteeth_per_program = 5", "", "fanuc_ac"), "--out", dir / "high"});
+  EXPECT_EQ(high.exit_code, 3);
+  EXPECT_NE(high.err.find("job.toml:"), std::string::npos);
+  EXPECT_NE(high.err.find("above O7999"), std::string::npos) << high.err;
+}
+
+}  // namespace
+}  // namespace toothpath::test
