@@ -10,15 +10,37 @@
 namespace toothpath::job {
 namespace {
 
+/// Sisters are tools of their own: the same form, another number. They stand behind all tools that the job names.
+void add_sisters(std::vector<toml::TableReader>& tables, Job& job) {
+  for (std::size_t k = 0; k < tables.size(); ++k)
+    for (std::size_t i = 0; i < job.tools[k].sisters.size(); ++i) {
+      const int number = job.tools[k].sisters[i];
+      const auto same = [&](const tool::ToolAssembly& other) { return other.number == number; };
+      if (const auto there = std::find_if(job.tools.begin(), job.tools.end(), same); there != job.tools.end()) {
+        tables[k].refuse_at(tables[k].where("sisters", i), "sisters: tool {} is {}", number,
+                            there->sister_of != 0 ? fmt::format("a sister of tool {} already", there->sister_of)
+                                                  : std::string("a [[tool]] of its own"));
+        continue;
+      }
+      tool::ToolAssembly sister = job.tools[k];
+      sister.number = number;
+      sister.sister_of = job.tools[k].number;
+      sister.sisters.clear();
+      job.tools.push_back(std::move(sister));
+    }
+}
+
 void read_tools(toml::TableReader& root, Job& job) {
   const ToolContext context{job.bevel_gear(), job.directory()};
-  for (auto& table : root.tables("tool", {1, SIZE_MAX})) {
+  auto tables = root.tables("tool", {1, SIZE_MAX});
+  for (auto& table : tables) {
     tool::ToolAssembly tool = read_tool(table, context, job.warnings);
     const auto same = [&](const tool::ToolAssembly& other) { return other.number == tool.number && tool.number > 0; };
     if (std::any_of(job.tools.begin(), job.tools.end(), same))
       table.refuse("number", "number = {} is used by two tools", tool.number);
     job.tools.push_back(std::move(tool));
   }
+  add_sisters(tables, job);
 }
 
 constexpr std::pair<const char*, const char*> kMillingTables[] = {

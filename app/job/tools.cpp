@@ -19,7 +19,9 @@ constexpr toml::Range kToolDiameter{0.01, 500, " mm"};
 constexpr std::size_t kMostMeridianBytes = 1 << 20;
 constexpr std::size_t kMostSegments = 100;  // of a holder
 constexpr double kMostHelix = 75;           // deg
-constexpr double kSameInLibrary = 1e-4;     // of a number: rounding
+constexpr toml::Range kLife{0, 1e6, " min", true};
+constexpr std::size_t kMostSisters = 50;
+constexpr double kSameInLibrary = 1e-4;  // of a number: rounding
 constexpr const char* kTaperAngle = "taper_angle";
 
 std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
@@ -58,6 +60,20 @@ std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
     result.push_back({read[0], read[1], read[2]});
   }
   return result;
+}
+
+/// How long it lasts, and what goes on in its place.
+void read_life(toml::TableReader& table, tool::ToolAssembly& tool) {
+  tool.life_min = table.optional_number("life", kLife).value_or(0);
+  table.relate(toml::KeyRelation::Kind::needs, "sisters", "life");
+  const auto sisters = table.optional_integer_list("sisters", kToolNumber, {1, kMostSisters});
+  if (!sisters) return;
+  tool.sisters = *sisters;
+  if (sisters->empty() || sisters->size() > kMostSisters)
+    table.refuse("sisters", "sisters has {} numbers, 1 to {} may stand here", sisters->size(), kMostSisters);
+  else if (!table.has("life"))
+    table.refuse("sisters", "sisters go on when tool {} is used up: state its life (minutes of cutting) too",
+                 tool.number);
 }
 
 std::vector<std::string_view> kind_words() {
@@ -257,6 +273,7 @@ tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& contex
   tool.stick_out_mm = stick_out.value_or(0);
   tool.holder = read_holder(table);
   tool.teeth = table.integer_or("teeth", {1, 100}, tool.teeth);
+  read_life(table, tool);
   if (length && stick_out && *stick_out > *length)
     table.refuse("stick_out", "stick_out = {} mm exceeds length = {} mm", *stick_out, *length);
   if (!type) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "app/base/units.h"
 #include "app/process/gear_of_job.h"
@@ -169,8 +170,9 @@ void add_warnings(report::RunReport& report, const job::Job& job) {
   const auto ratio = [](const report::OperationReport& o) {
     return o.cutting->load->deflection_mm / *o.cutting->may_leave_mm;
   };
+  std::set<int> seen;
   for (const report::OperationReport& o : report.operations) {
-    if (!o.cutting || !o.cutting->load) continue;
+    if (!seen.insert(o.operation).second || !o.cutting || !o.cutting->load) continue;  // a sister does the same
     const path::MillingOperation& asked = job.operations[std::size_t(o.operation)];
     const LargestCut load = largest_cut(report, o);
     if (asked.chip_load_mm > 0 && load.chip_mm > asked.chip_load_mm * (1 + kRounding))

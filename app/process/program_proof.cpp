@@ -44,6 +44,14 @@ std::string other_blank(const joints::GraphicsBlank& asked, const joints::Graphi
   return {};
 }
 
+void note_worn_out(ProgramProof& out, const std::map<int, double>& life) {
+  for (const auto& worn : out.read.worn_out)
+    out.warnings.push_back(
+        fmt::format("line {}: T{} has cut for its life of {:g} min there, in the whole program it cuts "
+                    "for {:.4g} min: a sister, or a new one, between two teeth before that",
+                    worn.line, worn.tool, life.at(worn.tool), out.read.cutting_minutes.at(worn.tool)));
+}
+
 /// The text as moves of the axes: of teeth that stand one by one those of the first ones.
 Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& asked, const GearCheck& gear,
                                   app::StageClock& clock) {
@@ -54,6 +62,9 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
   out.control = std::move(*control);
   const readback::AskedConditions conditions = asked_conditions(job, asked.paths);
   readback::ConditionJudge judge(program.machine, out.control, conditions);
+  std::map<int, double> life;
+  for (const tool::ToolAssembly& tool : job.tools)
+    if (tool.life_min > 0) life.emplace(tool.number, tool.life_min);
   std::map<int, std::string> blanks;  // by their lines: the text is executed more than once
   out.control.blank = [&](const joints::GraphicsBlank& seen, std::int32_t line) {
     if (program.blank)
@@ -67,12 +78,14 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
                      {.teeth = gear.teeth(),
                       .keep_all = job.verify.all_teeth,
                       .first_teeth = true,
-                      .watch = [&](const readback::ExecutedMove& m) {
-                        judge.add(m);
-                        if (m.line > seen) share.add(m.line - std::exchange(seen, m.line));
-                        if (program.moves) program.moves->add(m);
-                        if (program.watch) program.watch(m);
-                      }});
+                      .watch =
+                          [&](const readback::ExecutedMove& m) {
+                            judge.add(m);
+                            if (m.line > seen) share.add(m.line - std::exchange(seen, m.line));
+                            if (program.moves) program.moves->add(m);
+                            if (program.watch) program.watch(m);
+                          },
+                      .life_min = life});
   });
   out.control.blank = nullptr;
   if (!read) return read.error();
@@ -85,6 +98,7 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
       out.reasons.push_back(std::move(reason));
   }
   out.warnings = out.conditions.warnings;
+  note_worn_out(out, life);
   for (auto& [line, warning] : blanks) out.warnings.push_back(std::move(warning));
   out.hash = readback::hash_of_program(program.text);
   if (out.hash && !out.hash->fits()) {

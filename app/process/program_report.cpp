@@ -14,6 +14,7 @@
 #include "postproc/text/clamps.h"
 #include "postproc/text/lines.h"
 #include "postproc/text/writer.h"
+#include "postproc/tool_life/change.h"
 
 namespace toothpath::process {
 namespace {
@@ -81,6 +82,7 @@ report::RunReport report_of(const std::string& command, const job::Job& job, con
 void note_axis_program(report::RunReport& report, const job::Job& job, const machines::Machine& machine,
                        std::span<const path::ClPath* const> paths, const joints::AxisProgram& program) {
   report.axes = program.ranges;
+  report.tool_uses = program.tool_uses;
   if (machine.post.index_loop.value_or(false) && !program.loop && program.teeth > 1 && *program.no_loop != 0) {
     const SourcePosition at = machine.where("post.index_loop");
     report.warnings.push_back(
@@ -114,6 +116,8 @@ void note_axis_program(report::RunReport& report, const job::Job& job, const mac
                                       0,
                                       timed ? o.accelerated.feed : o.feed_minutes,
                                       (timed ? o.accelerated.rapid : o.rapid_minutes) + o.clamp_minutes};
+    if (o.end_place >= 0) operation.places = {o.first_place, o.end_place};
+    operation.share = double(o.places(program.teeth)) / program.teeth;
     for (const path::ClPath* path : paths)
       if (path->operation == o.operation) operation.cl_points += path->records.size();
     report.operations.push_back(operation);
@@ -248,6 +252,24 @@ Result<std::vector<PostedPart>> post_parts(joints::AxisProgram& whole, const tex
   return posted;
 }
 
+/// Sisters go on where tools are used up. @returns the first tool that does not last
+std::optional<Diagnostic> change_tools(const job::Job& job, const machines::Machine& machine,
+                                       joints::AxisProgram& program) {
+  std::vector<tool_life::LastingTool> tools;
+  for (const tool::ToolAssembly& tool : job.tools)
+    if (tool.life_min > 0 && tool.sister_of == 0) tools.push_back({tool.number, tool.life_min, tool.sisters});
+  if (tools.empty()) return std::nullopt;
+  const std::size_t before = program.operations.size();
+  for (const tool_life::Shortage& shortage : tool_life::change_tools(program, tools))
+    for (std::size_t k = 0; k < job.tools.size(); ++k)
+      if (job.tools[k].number == shortage.tool)
+        return located(
+            job, fmt::format("tool[{}].{}", k, shortage.one_tooth || job.tools[k].sisters.empty() ? "life" : "sisters"),
+            fail("{}", shortage.text));
+  if (program.operations.size() != before) estimate_times(program, machine);
+  return std::nullopt;
+}
+
 double counted(const joints::AxisProgram& program, const text::NcDialect& dialect, const text::NcHeader& header,
                double radius) {
   return text::granted_blend_mm(program, dialect, header) + radius * text::granted_blend_rad(program, dialect, header);
@@ -313,6 +335,7 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   const text::NcHeader header = header_of(request, assumed);
   text::note_corners(posted.axes, *dialect, header);
   if (posted.axes.corner_tolerance_mm > 0) estimate_times(posted.axes, machine);
+  if (auto lasting = change_tools(job, machine, posted.axes)) return *lasting;
   note_text_times(posted.axes, job, *dialect);
   auto text = clock.run("NC text", [&] { return text::write_nc(posted.axes, *dialect, header); });
   if (!text) return located(job, "machine.file", text.error());

@@ -54,8 +54,9 @@ readback::AskedConditions asked_conditions(const job::Job& job, std::span<const 
   for (const path::MillingOperation& o : job.operations) {
     const double raise = o.chip_load_mm > 0 && !o.finishes() ? path::MillingOperation::kMostRaise : 1;
     const auto tool = static_cast<std::size_t>(o.tool);
-    asked.operations.push_back(
-        {tool < job.tools.size() ? job.tools[tool].number : 0, o.speed_rpm, raise * o.feed_mm_min});
+    asked.operations.push_back({tool < job.tools.size() ? job.tools[tool].number : 0, o.speed_rpm,
+                                raise * o.feed_mm_min,
+                                tool < job.tools.size() ? job.tools[tool].sisters : std::vector<int>()});
   }
   for (const path::ClPath* path : paths) {
     const auto n = static_cast<std::size_t>(path->operation);

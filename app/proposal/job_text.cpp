@@ -1,5 +1,7 @@
 #include "app/proposal/job_text.h"
 
+#include <fmt/ranges.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -112,7 +114,10 @@ std::string tool_text(const tool::ToolAssembly& tool, double depth) {
                           real(s.upper_diameter_mm), real(s.height_mm));
   text += line("holder", "[" + holder + "]", "[lower diameter, upper diameter, height] from below");
   text += line("stick_out", real(tool.stick_out_mm), "lower face of the holder to the tip");
-  return text + line("teeth", fmt::format("{}", tool.teeth));
+  text += line("teeth", fmt::format("{}", tool.teeth));
+  if (tool.life_min > 0) text += line("life", real(tool.life_min), "minutes of cutting");
+  if (!tool.sisters.empty()) text += line("sisters", fmt::format("[{}]", fmt::join(tool.sisters, ", ")));
+  return text;
 }
 
 class Operations {

@@ -104,6 +104,11 @@ constexpr Meaning kJobMeanings[] = {
     {"tool.stick_out", "From the lower face of the holder to the tip."},
     {"tool.holder", "The holder in segments from below, each a cone between two diameters."},
     {"tool.teeth", "Number of cutting edges."},
+    {"tool.life",
+     "Minutes of feed moves that the tool lasts. A program that needs more of it goes on with a sister between two "
+     "teeth."},
+    {"tool.sisters",
+     "Numbers of tools of the same form in the magazine that go on, one after the other, when it is used up."},
     {"tool.meridian", "CSV file beside the job with the measured error of the cutter's outline: `t,f` in mm and um."},
     {"tool.form_error", "Error of the cutter's form; stated, it counts in the ledger."},
     {"tool.run_out", "Total run-out reading at the tip; stated, it counts in the ledger."},

@@ -372,11 +372,20 @@ void add_motion(Json& json, const RunReport& r) {
                           {"cutting_minutes", o.feed_minutes},
                           {"rapid_minutes", o.rapid_minutes},
                           {"minutes", o.minutes()}});
+    if (o.places) operations.back()["places"] = {o.places->first, o.places->second};
     if (o.cutting) add_cutting(operations.back(), *o.cutting);
   }
   add_sides(operations, r);
   json["operations"] = std::move(operations);
   if (r.tooth_stride != 1) json["tooth_order"] = {{"order", "spread"}, {"stride", r.tooth_stride}, {"teeth", r.teeth}};
+  for (const joints::ToolUse& use : r.tool_uses) {
+    Json entry = {{"tool", use.tool}, {"life", use.life_min}, {"minutes", use.minutes()}, {"stretches", Json::array()}};
+    if (use.sister_of != 0) entry["sister_of"] = use.sister_of;
+    for (const auto& s : use.stretches)
+      entry["stretches"].push_back(
+          {{"op", s.operation}, {"places", {s.first_place, s.end_place}}, {"minutes", s.minutes}});
+    json["tool_life"].push_back(std::move(entry));
+  }
   if (r.restart) json["restart"] = {{"op", r.restart->operation}, {"tooth", r.restart->tooth}};
   Json tolerances = Json::array();
   for (const auto& t : r.length_tolerances) {

@@ -33,7 +33,10 @@ struct OperationReport {
   double speed_rpm = 0, feed_mm_min = 0;
   std::size_t cl_points = 0;                   ///< one tooth space
   double feed_minutes = 0, rapid_minutes = 0;  ///< all teeth
-  std::optional<CuttingLoad> cutting = {};     ///< none where forces were not asked for
+  /// Where it changes its tool it stands here once a tool: first place in the order of the teeth, and behind the last.
+  std::optional<std::pair<int, int>> places = {};
+  double share = 1;                         ///< of the teeth
+  std::optional<CuttingLoad> cutting = {};  ///< none where forces were not asked for
   [[nodiscard]] double minutes() const { return feed_minutes + rapid_minutes; }
 };
 
@@ -152,6 +155,7 @@ struct RunReport {
   std::optional<BlockTimes> block_times;             ///< none where no program was posted
   int teeth = 0, tooth_stride = 1;                   ///< of the program: place n cuts tooth n * stride mod teeth
   std::optional<joints::ProgramRestart> restart;     ///< the program begins there
+  std::vector<joints::ToolUse> tool_uses;            ///< of tools whose life is stated
   std::vector<PartReport> parts;                     ///< programs beside the whole one, in their order
   std::optional<restart::RestartMenu> restart_menu;  ///< where it can be taken up again
   std::vector<LengthTolerance> length_tolerances;

@@ -284,8 +284,17 @@ std::optional<std::vector<double>> TableReader::numbers_listed(std::string_view 
 
 std::optional<std::vector<int>> TableReader::integer_list(std::string_view key, const Range& range,
                                                           const Count& count) {
-  ask(key, list_shape(ValueKind::integers, range, count), Presence::required);
-  const TomlValue* found = look(key, true);
+  return integers_listed(key, range, count, Presence::required);
+}
+std::optional<std::vector<int>> TableReader::optional_integer_list(std::string_view key, const Range& range,
+                                                                   const Count& count) {
+  return integers_listed(key, range, count, Presence::optional);
+}
+
+std::optional<std::vector<int>> TableReader::integers_listed(std::string_view key, const Range& range,
+                                                             const Count& count, Presence presence) {
+  ask(key, list_shape(ValueKind::integers, range, count), presence);
+  const TomlValue* found = look(key, presence == Presence::required);
   if (!found) return std::nullopt;
   return list<int>(key, *found,
                    [&](const TomlValue& value, const std::string& name) { return to_integer(value, name, range); });

@@ -127,6 +127,8 @@ class TableReader {
   std::optional<std::vector<double>> optional_numbers(std::string_view key, std::size_t count, const Range& range);
   std::optional<std::vector<double>> optional_number_list(std::string_view key, const Range& range,
                                                           const Count& count = {});
+  std::optional<std::vector<int>> optional_integer_list(std::string_view key, const Range& range,
+                                                        const Count& count = {});
   std::optional<std::vector<std::string>> optional_ascii_list(std::string_view key, const Count& count = {},
                                                               std::vector<std::string> words = {});
   /// A value whose structure the caller reads itself; nothing when absent.
@@ -187,6 +189,8 @@ class TableReader {
   std::optional<bool> to_boolean(std::string_view key, const TomlValue& value);
   std::optional<std::vector<double>> numbers_listed(std::string_view key, const Range& range, const Count& count,
                                                     Presence presence);
+  std::optional<std::vector<int>> integers_listed(std::string_view key, const Range& range, const Count& count,
+                                                  Presence presence);
   std::optional<std::vector<double>> counted(std::string_view key, const TomlValue& value, std::size_t count,
                                              const Range& range);
   template <typename T, typename Read>

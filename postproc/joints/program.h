@@ -152,7 +152,9 @@ struct AxisOperation {
   int first_place = 0;             ///< where the order begins; not 0 only where the operation stands here in part
   int end_place = -1;              ///< behind its last place; -1: the order ends
   double feed_minutes = 0, rapid_minutes = 0;  ///< over all teeth
-  TimedMinutes accelerated;  ///< the same with the accelerations of the axes, where the machine states them
+  TimedMinutes accelerated;           ///< the same with the accelerations of the axes, where the machine states them
+  std::vector<double> tooth_minutes;  ///< .. and of every entry of `teeth` what its G1 take
+  int sister_of = 0;                  ///< T in whose place the tool goes on; 0: it is the job's
   [[nodiscard]] int end_of(int teeth_of_gear) const { return end_place < 0 ? teeth_of_gear : end_place; }
   [[nodiscard]] int places(int teeth_of_gear) const { return end_of(teeth_of_gear) - first_place; }
   double clamp_minutes = 0;  ///< on top: what clamping the rotaries takes (text::note_clamp_times)
@@ -179,6 +181,22 @@ struct ProgramPart {
   int first_place = 0, end_place = 0;  ///< in the order of the teeth
 };
 
+/// A tool that lasts so long, as a program uses it.
+struct ToolUse {
+  int tool = 0, sister_of = 0;  ///< T; `sister_of` 0: it is the job's
+  double life_min = 0;
+  struct Stretch {
+    int operation = 0, first_place = 0, end_place = 0;  ///< in the order of the teeth
+    double minutes = 0;                                 ///< of its G1
+  };
+  std::vector<Stretch> stretches;
+  [[nodiscard]] double minutes() const {
+    double sum = 0;
+    for (const Stretch& s : stretches) sum += s.minutes;
+    return sum;
+  }
+};
+
 struct AxisProgram {
   WordFormat format;
   std::array<char, 5> letters{};   ///< X Y Z and the two rotaries; 0: no such axis
@@ -189,6 +207,7 @@ struct AxisProgram {
   int tooth_stride = 1;                   ///< as in the options
   std::optional<ProgramRestart> restart;  ///< the program begins there, not at its beginning
   std::optional<ProgramPart> part;        ///< it holds that alone
+  std::vector<ToolUse> tool_uses;         ///< of tools whose life is stated, in the order of the whole program
   int index_axis = -1;                    ///< 3 or 4: which word is shifted by the index
   int index_sign = 1;                     ///< word of tooth k = word + index_sign * k * 360 / z
   machines::TcpMode tcp = machines::TcpMode::none;  ///< how the blocks of a cut are meant

@@ -81,6 +81,14 @@ std::vector<double> walk(Walk& place, const std::vector<AxisBlock>& blocks, cons
   return times;
 }
 
+/// Of its G1, the turns of TCP among them.
+double cutting_minutes(const std::vector<AxisBlock>& blocks, const std::vector<double>& times) {
+  double sum = 0;
+  for (std::size_t i = 0; i < times.size(); ++i)
+    if (blocks[i].kind == BlockKind::feed || blocks[i].kind == BlockKind::turn) sum += times[i];
+  return sum;
+}
+
 /// Z alone up to the height of tool changes, behind every operation.
 double retract(machines::Joints& at, double top_mm, const timing::PathControl& control,
                const machines::Machine& machine) {
@@ -107,6 +115,7 @@ std::size_t time_operation(AxisProgram& program, AxisOperation& op, std::optiona
   Walk place(program, op.tool_length_mm, machine);
   std::size_t ruled = 0;
   op.accelerated = {};
+  op.tooth_minutes.clear();
   const int copies = program.loop ? op.places(program.teeth) : 1;
   const std::size_t index_rotary = program.index_axis == 4 ? 1 : 0;
   const double pitch_rad = copies > 1 ? program.index_sign * index_minutes(op, copies) / (copies - 1) *
@@ -131,6 +140,7 @@ std::size_t time_operation(AxisProgram& program, AxisOperation& op, std::optiona
       place.stand(behind);
       times = walk(place, blocks, control_of(program, machine), machine);
     }
+    op.tooth_minutes.push_back(std::max(cutting_minutes(blocks, first), cutting_minutes(blocks, times)));
     for (std::size_t i = 0; i < times.size(); ++i) {
       const AxisBlock& b = blocks[i];
       if (tooth.packed.empty()) tooth.blocks[i].run_minutes = times[i];

@@ -55,6 +55,7 @@ double pitches_turned(int first_place, int end_place, int stride, int teeth) {
 AxisOperation operation_between(const AxisOperation& op, int first, int end, const AxisProgram& program) {
   AxisOperation out = op;
   out.first_place = first;
+  out.tooth_minutes.clear();
   const int had = op.places(program.teeth), kept = end - first;
   if (kept == had) return out;
   out.end_place = end == program.teeth && op.end_place < 0 ? -1 : end;

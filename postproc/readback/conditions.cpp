@@ -101,7 +101,10 @@ void ConditionJudge::feed(const ExecutedMove& m, const Step& step, ConditionsOfO
   const double ms = m.minutes * 60000;
   keep_least(found_.shortest_ms, ms, m.line);
   if (ms * kRounding < machine_.min_block_ms) note(Kind::short_block, 0, m, -ms);
-  if (const AskedCut* cut = asked(m.operation); cut != nullptr && m.tool != cut->tool) note(Kind::tool, m.tool, m, 0);
+  if (const AskedCut* cut = asked(m.operation);
+      cut != nullptr && m.tool != cut->tool &&
+      std::find(cut->sisters.begin(), cut->sisters.end(), m.tool) == cut->sisters.end())
+    note(Kind::tool, m.tool, m, 0);
   if (step.way_mm <= kStill) return;
   const double speed = step.way_mm / m.minutes;
   keep_most(operation.any_mm_min, speed, m.line);

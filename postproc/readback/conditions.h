@@ -17,7 +17,8 @@ namespace toothpath::readback {
 struct AskedCut {
   int tool = 0;  ///< T
   double speed_rpm = 0;
-  double feed_mm_min = 0;  ///< greatest of the tip that the job means
+  double feed_mm_min = 0;         ///< greatest of the tip that the job means
+  std::vector<int> sisters = {};  ///< T that may stand in its place
 };
 
 /// What a job asks of a program.

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "geometry/base/angle.h"
 #include "postproc/readback/operation_moves.h"
@@ -18,7 +20,8 @@ constexpr std::ptrdiff_t kMostLines = 30'000'000;
 // A program that ends executes a line once a tooth and flank or so; one that goes on for ever is found by what it has
 // executed. Short texts of other work may turn more often.
 constexpr std::size_t kBlocksPerLine = 8192, kLeastBlocks = 2'000'000;
-constexpr double kReadCoincident = 1e-9;  // mm
+constexpr double kRoundedLife = 1 + 1e-3;  // of the minutes of a tool: F is rounded
+constexpr double kReadCoincident = 1e-9;   // mm
 constexpr double kReadParallel = 1e-12;
 constexpr double kSameTip = 1e-9;              // mm: round-off of a turned frame
 constexpr float kSameShare = 1e-6F;            // of a block: its length with the round-off of a turned frame
@@ -279,6 +282,7 @@ class ReadBackRun {
   }
 
   Result<ReadBack> run(const joints::Setup& setup, const ReadBackOptions& options) {
+    life_ = options.life_min;
     if (auto s = count(options.watch); !s) return s.error();
     if (auto s = one_tooth_fits(options); !s) return s.error();
     CopyCheck check(counts_, control_, setup, options.teeth, index_sign(machine_, setup));
@@ -317,12 +321,23 @@ class ReadBackRun {
     };
     ExecutedMove before;
     result_.corners = control_.corners;
-    RunTimer timer(machine_, control_.corners, [this](bool rapid, double minutes) {
+    std::deque<std::pair<int, int>> open;  // tool and line of moves whose time is not known yet
+    RunTimer timer(machine_, control_.corners, [&](bool rapid, double minutes) {
       (rapid ? result_.accelerated.rapid : result_.accelerated.feed) += minutes;
+      if (life_.empty()) return;
+      const auto [tool, line] = open.front();
+      open.pop_front();
+      const auto life = life_.find(tool);
+      if (rapid || life == life_.end()) return;
+      double& cut = result_.cutting_minutes[tool];
+      const double most = life->second * kRoundedLife;
+      if (cut <= most && cut + minutes > most) result_.worn_out.push_back({tool, line});
+      cut += minutes;
     });
     Status status = execute_nc(text_, file_, control_, [&](const ExecutedMove& m) {
       ++result_.executed;
       if (watch) watch(m);
+      if (!life_.empty()) open.emplace_back(m.tool, m.line);
       timer.add(m);
       if (timing::is_bounded(m.corners) && !m.rapid) result_.corners = m.corners;
       const double minutes = m.minutes + double(m.dwell_min);
@@ -396,6 +411,7 @@ class ReadBackRun {
   ReadBack result_;
   std::map<int, OperationMoves> counts_;
   NamedTeeth teeth_;
+  std::map<int, double> life_;
   std::map<int, int> last_tool_;  ///< of every operation
   std::map<int, OperationTrace> traces_;
 };

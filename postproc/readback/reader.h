@@ -185,7 +185,12 @@ struct ReadBack {
   std::size_t executed = 0;
   double minutes = 0, feed_minutes = 0;             ///< as the text asks
   timing::Corners corners = timing::Corners::jump;  ///< of the control
-  joints::TimedMinutes accelerated;  ///< with the accelerations of the axes; without them as the text asks
+  joints::TimedMinutes accelerated;       ///< with the accelerations of the axes; without them as the text asks
+  std::map<int, double> cutting_minutes;  ///< of tools whose life was asked about: T -> of its feeds
+  struct WornOut {
+    int tool = 0, line = 0;  ///< where its life ends
+  };
+  std::vector<WornOut> worn_out;  ///< of these, those that cut for longer
   double blend_mm =
       0;  ///< largest tolerance of path blending in the feeds of `operations`, of all teeth where they are no copies
   int mixed_rapid = 0;  ///< line of the first rapid that moves more than one group of axes, of all executed moves; 0:
@@ -200,6 +205,7 @@ struct ReadBackOptions {
   bool keep_all = false;     ///< keep every tooth although they are copies
   bool first_teeth = false;  ///< of teeth that are no copies keep the first ones alone, where walk_teeth() can find all
   std::function<void(const ExecutedMove&)> watch = {};  ///< sees every executed move once, in order; may be empty
+  std::map<int, double> life_min = {};                  ///< T -> minutes of cutting that it lasts
   /// A program that needs more moves is refused by their number, before any is kept.
   std::size_t max_kept = kMostKeptBytes / sizeof(ExecutedMove);
 };

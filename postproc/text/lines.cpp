@@ -143,6 +143,26 @@ std::vector<std::string> assumed_comments(const std::vector<std::string>& assume
   return out;
 }
 
+namespace {
+
+/// Tools that do not last, and who goes on.
+std::vector<std::string> life_comments(const joints::AxisProgram& program) {
+  constexpr std::size_t kMostNamed = 8;  // a line of some controls has 64 characters
+  std::vector<std::string> out;
+  for (const joints::ToolUse& use : program.tool_uses) {
+    if (use.sister_of != 0) continue;
+    std::vector<std::string> sisters;
+    for (const joints::ToolUse& other : program.tool_uses)
+      if (other.sister_of == use.tool) sisters.push_back(fmt::format("T{}", other.tool));
+    std::string then = sisters.empty() ? "" : fmt::format(", THEN {}", fmt::join(sisters, ", "));
+    if (sisters.size() > kMostNamed) then = fmt::format(", THEN ITS {} SISTERS", sisters.size());
+    out.push_back(fmt::format("T{} CUTS FOR {:g} MIN{}", use.tool, use.life_min, then));
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<std::string> order_comments(const joints::AxisProgram& program) {
   std::vector<std::string> out;
   if (program.tooth_stride != 1)
@@ -157,6 +177,7 @@ std::vector<std::string> order_comments(const joints::AxisProgram& program) {
                               teeth_text(program, part->first_place, part->end_place)));
     if (part->number > 1) out.emplace_back("WHAT THE PARTS BEFORE CUT IS TAKEN AS DONE");
   }
+  for (auto& line : life_comments(program)) out.push_back(std::move(line));
   if (program.restart || program.part) {
     const bool timed = program.has_acceleration;
     out.push_back(fmt::format(

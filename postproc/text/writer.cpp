@@ -179,8 +179,10 @@ class Writer {
     set_values(op, position);
     out_.comment(
         fmt::format("OP {} {}", op.operation, op.type));  // as in the job, in every dialect: programs look for it
-    out_.comment(numbers::comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP", op.tool_number, op.tool_name,
-                                                   out_.value(numbers::to_fixed(op.tool_length_mm, 4), 4))));
+    out_.comment(
+        numbers::comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP{}", op.tool_number, op.tool_name,
+                                          out_.value(numbers::to_fixed(op.tool_length_mm, 4), 4),
+                                          op.sister_of == 0 ? "" : fmt::format(", SISTER OF T{}", op.sister_of))));
     const NcLoop& loop = dialect_.loop;
     std::vector<joints::AxisBlock> room;
     tilts_ = planes_.any(op.teeth.front().all(room));

@@ -1,5 +1,5 @@
-// Programs in parts, from outside: which files there are, what they say, what `check` says of a part alone, what stays
-// of an earlier run, what is refused.
+// Programs in parts and tools that last so many minutes, from outside: which files there are, what they say, what
+// `check` says of a part alone, what stays of an earlier run, what is refused.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -137,6 +137,108 @@ TEST(PartsCommand, NumbersFollowOneAnother) {
   EXPECT_EQ(high.exit_code, 3);
   EXPECT_NE(high.err.find("job.toml:"), std::string::npos);
   EXPECT_NE(high.err.find("above O7999"), std::string::npos) << high.err;
+}
+
+TEST(ToolLifeCommand, SistersGoOnBetweenTeeth) {
+  const TestDir dir;
+  const Finished plain = run_program({"run", kSpurQuick, "--out", dir / "plain", "--quiet"});
+  ASSERT_EQ(plain.exit_code, 0) << plain.err;
+  const double minutes = report_in(dir / "plain")["cutting_minutes"].get<double>();
+  const double life = 0.3 * minutes;
+  const std::string job =
+      job_with(dir, "tooth_order = \"spread\"", fmt::format("life = {:.4f}\nsisters = [21, 22, 23]", life));
+  const Finished run = run_program({"run", job, "--out", dir / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
+  const Json report = report_in(dir / "out");
+  ASSERT_EQ(report["tool_life"].size(), 4U);
+  double sum = 0;
+  int places = 0;
+  for (const Json& use : report["tool_life"]) {
+    EXPECT_LE(use["minutes"].get<double>(), life);
+    EXPECT_EQ(use.contains("sister_of"), use["tool"] != 1);
+    sum += use["minutes"].get<double>();
+    for (const Json& s : use["stretches"]) places += s["places"][1].get<int>() - s["places"][0].get<int>();
+  }
+  EXPECT_NEAR(sum, minutes, 1e-3 * minutes);
+  EXPECT_EQ(places, 120);
+  EXPECT_EQ(report["verified"], true);
+  EXPECT_EQ(report["gouge_um"]["measured"], report_in(dir / "plain")["gouge_um"]["measured"]);
+  const std::string program = file_text(dir / "out/program.ngc");
+  EXPECT_NE(program.find("SISTER OF T1)"), std::string::npos);
+  EXPECT_NE(program.find("MIN, THEN T21, T22, T23)"), std::string::npos);
+  EXPECT_NE(program.find("T21 M6"), std::string::npos);
+  const std::string sheet = file_text(dir / "out/setup.html");
+  EXPECT_NE(sheet.find("Tool life"), std::string::npos);
+  EXPECT_NE(sheet.find("T22, sister of T1"), std::string::npos);
+  EXPECT_NE(file_text(dir / "out/program_tools.tbl").find("T23"), std::string::npos);
+  // The same program is right for `check`; for a job whose tools last less it is a warning with its line.
+  ASSERT_EQ(run_program({"check", job, dir / "out/program.ngc", "--out", dir / "check"}).exit_code, 0);
+  EXPECT_EQ(said(report_in(dir / "check"), "warnings").find("has cut for its life"), std::string::npos);
+  const std::string shorter =
+      job_with(dir, "tooth_order = \"spread\"", fmt::format("life = {:.4f}\nsisters = [21, 22, 23]", 0.2 * minutes));
+  ASSERT_EQ(run_program({"check", shorter, dir / "out/program.ngc", "--out", dir / "check"}).exit_code, 0);
+  const std::string warned = said(report_in(dir / "check"), "warnings");
+  EXPECT_NE(warned.find(": T1 has cut for its life of"), std::string::npos) << warned;
+  EXPECT_NE(warned.find("line "), std::string::npos);
+  // A tool that is no sister.
+  const std::string stranger = job_with(dir, "", "life = 1000\nsisters = [31, 32, 33]");
+  EXPECT_NE(run_program({"check", stranger, dir / "out/program.ngc", "--out", dir / "check"}).exit_code, 0);
+}
+
+// Teeth that are written out in TCP are looked at one by one, also those that a sister begins with.
+TEST(ToolLifeCommand, WrittenOutTeethBehindAChangeAreCut) {
+  const TestDir dir;
+  std::string machine = file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml");
+  machine = replaced(replaced(machine, "\"linuxcnc\"", "\"siemens\""), "tcp = \"none\"", "tcp = \"angles\"");
+  write_file(dir / "written.toml", machine + "\n[post]\nindex_loop = false\n");
+  const std::string job = job_with(dir, "", "life = 20\nsisters = [21, 22, 23, 24, 25, 26, 27]", "written.toml");
+  const Finished run = run_program({"run", job, "--out", dir / "out", "--quiet"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_GE(report_in(dir / "out")["tool_life"].size(), 3U);
+  // A tooth that a sister begins with, left out: from its comment to the next.
+  std::string text = file_text(dir / "out/program.mpf");
+  const std::size_t sister = text.find("SISTER OF T1"), tooth = text.find(";TOOTH ", sister),
+                    next = text.find(";TOOTH ", tooth + 1);
+  ASSERT_NE(next, std::string::npos);
+  const std::string number = text.substr(tooth + 7, text.find('\n', tooth) - tooth - 7);
+  text.erase(tooth, next - tooth);
+  write_file(dir / "less.mpf", text);
+  const Finished check = run_program({"check", job, dir / "less.mpf", "--out", dir / "check"});
+  EXPECT_EQ(check.exit_code, 1) << check.err;
+  EXPECT_NE(check.err.find("does not cut tooth " + number), std::string::npos) << number << check.err;
+}
+
+TEST(ToolLifeCommand, RestartCallsTheSisterOfThatTooth) {
+  const TestDir dir;
+  const std::string job = job_with(dir, "", "life = 20\nsisters = [21, 22, 23, 24, 25, 26, 27, 28]");
+  const Finished run = run_program({"run", job, "--out", dir / "out", "--quiet"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json report = report_in(dir / "out");
+  ASSERT_GE(report["tool_life"].size(), 2U) << "the sample cuts for less than the life of a tool";
+  const Json& use = report["tool_life"].back();
+  const Json& stretch = use["stretches"].back();
+  const int tooth = stretch["places"][1].get<int>() - 1;
+  const Finished restart = run_program(
+      {"run", job, "--restart", fmt::format("{}:{}", stretch["op"].get<int>(), tooth), "--out", dir / "restart"});
+  ASSERT_EQ(restart.exit_code, 0) << restart.err << restart.out;
+  const std::string program = file_text(dir / "restart/program.ngc");
+  EXPECT_NE(program.find(fmt::format("T{} M6", use["tool"].get<int>())), std::string::npos);
+  EXPECT_EQ(program.find("T1 M6"), std::string::npos);
+}
+
+TEST(ToolLifeCommand, WhatDoesNotLastIsRefusedWithItsPlace) {
+  const TestDir dir;
+  const auto refused = [&](const std::string& tool) {
+    const Finished run = run_program({"run", job_with(dir, "", tool), "--out", dir / "out", "--quiet"});
+    EXPECT_EQ(run.exit_code, 3) << run.err;
+    return run.err;
+  };
+  const std::string one = refused("life = 0.01\nsisters = [21]"), none = refused("life = 20"),
+                    few = refused("life = 20\nsisters = [21]");
+  EXPECT_NE(one.find("job.toml:38:8: error: one tooth takes "), std::string::npos) << one;
+  EXPECT_NE(none.find("job.toml:38:8: error: tool 1 lasts 20 min, the program cuts for "), std::string::npos) << none;
+  EXPECT_NE(few.find("job.toml:39:11: error: tool 1 and 1 sister last 40 min"), std::string::npos) << few;
+  EXPECT_NE(few.find("min are missing"), std::string::npos) << few;
 }
 
 }  // namespace

@@ -154,6 +154,8 @@ class BevelProcess final : public process::GearProcess {
       const auto own = finger::gear_for_finger_mill(gear_, job_.tools[k]);
       if (!own) return process::located(job_, fmt::format("tool[{}]", k), own.error());
       out.bodies[k] = finger::finger_bodies(own->cutter(), job_.tools[k]);
+      for (std::size_t sister = 0; sister < job_.tools.size(); ++sister)
+        if (job_.tools[sister].sister_of == job_.tools[k].number) out.bodies[sister] = out.bodies[k];
     }
     return out;
   }

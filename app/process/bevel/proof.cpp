@@ -159,9 +159,11 @@ Status BevelGearCheck::rapids_clear(const readback::OperationTrace& trace, const
                                         {kFingerMotionTolerance, kFingerMotionTolerance});
   if (!motions) return motions.error();
   int operation = trace.operation;  // below 0: ahead of the first one, where only the tool is known
+  int tool = trace.tool;
+  for (const tool::ToolAssembly& sister : job_.tools)
+    if (sister.number == trace.tool && sister.sister_of != 0) tool = sister.sister_of;
   for (std::size_t k = 0; k < job_.operations.size() && operation < 0; ++k)
-    if (job_.tools[static_cast<std::size_t>(job_.operations[k].tool)].number == trace.tool)
-      operation = static_cast<int>(k);
+    if (job_.tools[static_cast<std::size_t>(job_.operations[k].tool)].number == tool) operation = static_cast<int>(k);
   for (path::ToolMotion& m : *motions) m.operation = operation;
   if (operation < 0 && !motions->empty())
     return fail_as(DiagnosticKind::verification, "line {}: no operation has tool {}", motions->front().line,

@@ -27,7 +27,7 @@ ToolWork work_of(int tool_number, const SectionInput& input) {
     work.feed_minutes += o.feed_minutes;
     work.turns += o.feed_minutes * o.speed_rpm;
     for (const path::ClPath* path : input.paths)
-      if (path->operation == o.operation) work.way_mm += input.report.teeth * feed_way_mm(*path);
+      if (path->operation == o.operation) work.way_mm += o.share * input.report.teeth * feed_way_mm(*path);
   }
   return work;
 }

@@ -46,10 +46,16 @@ void restart_section(Sheet& sheet, const job::Job& job, const report::RunReport&
   sheet.row({"start", "line 1", "nothing is taken over from an earlier program",
              fmt::format("as written: {}", report.restart ? report.restart->tooth : 0)});
   for (const auto& op : menu.operations) {
-    const auto found = std::find_if(report.operations.begin(), report.operations.end(),
-                                    [&](const auto& o) { return o.operation == op.operation; });
-    sheet.row({fmt::format("op {} {}", op.operation, op.type), place(op.at),
-               found == report.operations.end() ? "" : active(*found, job), how_to_set_the_tooth(op, report)});
+    const auto found = std::find_if(report.operations.begin(), report.operations.end(), [&](const auto& o) {
+      return o.operation == op.operation && o.tool_number == op.tool;
+    });
+    const bool piece = found != report.operations.end() && found->places;
+    sheet.row(
+        {fmt::format(
+             "op {} {}{}", op.operation, op.type,
+             piece ? fmt::format(", T{}, places {} to {}", op.tool, found->places->first, found->places->second - 1)
+                   : ""),
+         place(op.at), found == report.operations.end() ? "" : active(*found, job), how_to_set_the_tooth(op, report)});
   }
   sheet.end_table();
   sheet.raw(fmt::format(

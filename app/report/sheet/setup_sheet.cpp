@@ -79,10 +79,14 @@ void tool_table(Sheet& sheet, const job::Job& job, const report::RunReport& repo
   if (timed) columns.insert(columns.end(), {"cutting", "rapids", "total"});
   sheet.begin_table(columns);
   for (const auto& tool : job.tools) {
-    std::vector<std::string> row = {std::to_string(tool.number),       tool::cutter_text(tool),
-                                    millimetres(tool.length_mm),       millimetres(tool.stick_out_mm),
-                                    millimetres(tool.flute_length_mm), fmt::format("dia {:g}", tool.shank_diameter_mm),
-                                    std::to_string(tool.teeth)};
+    std::vector<std::string> row = {
+        std::to_string(tool.number),
+        tool::cutter_text(tool) + (tool.sister_of == 0 ? "" : fmt::format(", sister of T{}", tool.sister_of)),
+        millimetres(tool.length_mm),
+        millimetres(tool.stick_out_mm),
+        millimetres(tool.flute_length_mm),
+        fmt::format("dia {:g}", tool.shank_diameter_mm),
+        std::to_string(tool.teeth)};
     double feed = 0, rapid = 0;
     for (const auto& operation : report.operations) {
       if (operation.tool_number != tool.number) continue;
@@ -117,7 +121,8 @@ void tool_section(Sheet& sheet, const job::Job& job, const report::RunReport& re
   tool_table(sheet, job, report);
   if (!report.operations.empty()) change_line(sheet, report);
   sheet.raw("<p>");
-  for (const auto& tool : job.tools) sheet.raw(fmt::format("T{} {} &nbsp; ", tool.number, tool_sketch(tool)));
+  for (const auto& tool : job.tools)
+    if (tool.sister_of == 0) sheet.raw(fmt::format("T{} {} &nbsp; ", tool.number, tool_sketch(tool)));
   sheet.raw("</p>\n");
 }
 

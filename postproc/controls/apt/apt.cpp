@@ -40,6 +40,7 @@ class AptWriter {
         out_.line(
             fmt::format("LOADTL/{},LENGTH,{}", op.tool_number, number(numbers::to_fixed(op.tool_length_mm, 4), 4)));
         cutter(op);
+        if (op.sister_of != 0) out_.comment(fmt::format("SISTER OF T{}", op.sister_of));
       }
       loaded = op.tool_number;
       out_.line(fmt::format("SPINDL/RPM,{},CLW", std::llround(op.spindle_rpm)));
