@@ -13,6 +13,7 @@
 #include "machines/body.h"
 #include "machines/coolant.h"
 #include "machines/kinematic_chain.h"
+#include "machines/tool_check.h"
 
 namespace toothpath::machines {
 
@@ -96,6 +97,7 @@ struct Machine {
   KinematicChain chain;
   std::vector<MachineBody> bodies;  ///< in the order of the file; empty: none is stated
   PostSettings post;
+  std::optional<ToolCheck> tool_check;  ///< not stated: no program checks a tool
 
   /// Place of a key that stands in the file, else the file alone.
   [[nodiscard]] SourcePosition where(std::string_view key) const;

@@ -22,7 +22,8 @@ constexpr double kLeastDirection = 1e-3;      // length of a direction as writte
 constexpr double kLeastOffset = 1.0;          // mm; the largest offset of all table axes: less may mean metres ...
 constexpr double kMeasuredOffset = 0.1;       // mm; ... but for this little, which is measured on axes that should meet
 constexpr std::size_t kMostRotaries = 2;
-constexpr std::size_t kMostBlocks = 1000;  // of one key
+constexpr std::size_t kMostBlocks = 1000;                      // of one key
+constexpr double kLeastClearance = 0.1, kMostClearance = 500;  // mm above the tool setter
 
 std::string letter_name(char letter) { return std::string(1, letter); }
 
@@ -346,6 +347,24 @@ void read_post(toml::TableReader post, PostSettings& settings) {
   post.finish();
 }
 
+/// The setter of the tools, and the lines that go there.
+ToolCheck read_tool_check(toml::TableReader table) {
+  ToolCheck check;
+  if (auto lines = table.optional_ascii_list("lines", {1, kMostBlocks})) {
+    if (lines->empty()) table.refuse("lines", "{} is empty, must have at least one line", table.name("lines"));
+    check.lines = std::move(*lines);
+  }
+  if (const auto at = table.numbers("position", 3, {-kLargestLength, kLargestLength, " mm"}))
+    check.position_mm = Vec3((*at)[0], (*at)[1], (*at)[2]);
+  check.clearance_mm = table.number_or("clearance", {kLeastClearance, kMostClearance, " mm"}, check.clearance_mm);
+  check.feed_mm_min = table.number_or("feed", toml::Range::positive(kLargestSpeed, " mm/min"), check.feed_mm_min);
+  check.tolerance_mm = table.optional_number("tolerance", {kLeastCheckTolerance, kMostCheckTolerance, " mm"});
+  check.uncertainty_mm = table.optional_number("uncertainty", {0, 1, " mm"});
+  check.minutes = table.number_or("time", {0, kLongestToolChange, " s"}, 0) / 60;
+  table.finish();
+  return check;
+}
+
 /// Where the direction of the last rotary axis stands: that of a pair that cannot work together.
 SourcePosition direction_position(const toml::TomlValue& tree, const KinematicChain& chain) {
   const auto inside = [](const toml::TomlEntry* entry, std::string_view key) {
@@ -405,6 +424,7 @@ Machine read_machine_tree(const toml::TomlValue& tree, const std::string& file, 
   }
   if (const auto limits = root.required_table("limits")) read_limits(*limits, machine);
   if (const auto post = root.table("post")) read_post(*post, machine.post);
+  if (const auto check = root.table("tool_check")) machine.tool_check = read_tool_check(*check);
   read_chain(root, machine);
   read_bodies(root, machine);
   check_accelerations(root, machine);

@@ -68,6 +68,8 @@ inline constexpr toml::Range kTorque{1e-6, 1e9, " N m"};
 inline constexpr toml::Range kProgramNumber{1, 7999};
 /// Teeth of a part of a program.
 inline constexpr toml::Range kTeethPerProgram{1, 5000};
+/// Teeth between two checks of a tool.
+inline constexpr toml::Range kToolCheckTeeth{1, 5000};
 /// Contour tolerance of a program.
 inline constexpr toml::Range kContourTolerance{1e-4, 0.1, " mm"};
 /// Numbers of tools.

@@ -406,6 +406,20 @@ VerifySettings read_verify(toml::TableReader& table, bool bevel) {
   return verify;
 }
 
+/// Where tools are checked; teeth between two checks are stated where teeth decide, and nowhere else.
+void read_tool_check(toml::TableReader& table, text::TextWishes& wishes) {
+  const std::initializer_list<std::string_view> words = {"none", "tool_changes", "operations", "teeth"};
+  const std::string word = table.word_or("tool_check", words, "none");
+  wishes.checks = static_cast<text::ToolChecks>(std::find(words.begin(), words.end(), word) - words.begin());
+  const auto teeth = table.optional_integer("tool_check_teeth", kToolCheckTeeth);
+  wishes.teeth_between_checks = teeth.value_or(0);
+  if (teeth && wishes.checks != text::ToolChecks::teeth)
+    table.refuse("tool_check_teeth", "tool_check_teeth = {} goes with tool_check = \"teeth\" alone, which is \"{}\"",
+                 *teeth, word);
+  else if (!table.has("tool_check_teeth") && wishes.checks == text::ToolChecks::teeth)
+    table.refuse("tool_check", "tool_check = \"teeth\" needs tool_check_teeth: the teeth between two checks");
+}
+
 ProgramSettings read_program_settings(toml::TableReader& table) {
   ProgramSettings program;
   program.number = table.optional_integer("number", kProgramNumber);
@@ -421,6 +435,7 @@ ProgramSettings read_program_settings(toml::TableReader& table) {
     table.refuse("teeth_per_program",
                  "split = \"none\" and teeth_per_program = {} contradict each other: leave one of them out",
                  *program.teeth_per_program);
+  read_tool_check(table, program.text);
   program.contour_tolerance_mm = table.optional_number("contour_tolerance", kContourTolerance);
   program.text.restart_numbers = table.boolean_or("restart_numbers", program.text.restart_numbers);
   program.tilted_planes = table.boolean_or("tilted_planes", program.tilted_planes);

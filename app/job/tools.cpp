@@ -10,6 +10,7 @@
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 #include "machines/toml/regular_file.h"
+#include "machines/tool_check.h"
 
 namespace toothpath::job {
 namespace {
@@ -65,6 +66,9 @@ std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
 /// How long it lasts, and what goes on in its place.
 void read_life(toml::TableReader& table, tool::ToolAssembly& tool) {
   tool.life_min = table.optional_number("life", kLife).value_or(0);
+  tool.check_tolerance_mm =
+      table.optional_number("check_tolerance", {machines::kLeastCheckTolerance, machines::kMostCheckTolerance, " mm"})
+          .value_or(0);
   table.relate(toml::KeyRelation::Kind::needs, "sisters", "life");
   const auto sisters = table.optional_integer_list("sisters", kToolNumber, {1, kMostSisters});
   if (!sisters) return;

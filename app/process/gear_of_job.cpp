@@ -119,6 +119,57 @@ void refuse_planes(const job::Job& job, const machines::Machine& machine, const 
                                                                     : ": the program is then written with TCP"));
 }
 
+/// What a machine cannot check, and what its file lacks for it.
+void refuse_checks(const job::Job& job, const machines::Machine& machine, const text::NcDialect& dialect,
+                   std::vector<Diagnostic>& errors) {
+  if (job.program.text.checks == text::ToolChecks::none) return;
+  const SourcePosition at = job.where("program.tool_check");
+  if (dialect.write != nullptr) {
+    errors.push_back(fail_at(at, "tool_check: dialect \"{}\" has no words for it, leave it out", dialect.name));
+    return;
+  }
+  if (!dialect.tool_check) {
+    errors.push_back(
+        fail_at(at,
+                "tool_check: {} states no tool setter: [tool_check] with its position{} in the machine file "
+                "does",
+                machine.name, dialect.check_lines.empty() ? " and the lines of its builder" : ""));
+    return;
+  }
+  const machines::ToolCheck& check = *dialect.tool_check;
+  const bool named = std::any_of(check.lines.begin(), check.lines.end(),
+                                 [](const std::string& line) { return line.find("{tolerance}") != std::string::npos; });
+  const double last_digit = std::pow(10.0, -dialect.format.linear_decimals);
+  const double top = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
+  for (std::size_t k = 0; k < job.tools.size(); ++k) {
+    const tool::ToolAssembly& tool = job.tools[k];
+    if (tool.sister_of != 0) continue;
+    const auto place = [&](const char* key) { return job.where(fmt::format("tool[{}].{}", k, key)); };
+    const double stated = tool.check_tolerance_mm, tolerance = stated > 0 ? stated : check.tolerance_mm.value_or(0);
+    if (tolerance <= 0)
+      errors.push_back(fail_at(place("number"),
+                               "tool {} is checked, and nothing says how far its length may be off: check_tolerance of "
+                               "the tool, or tool_check.tolerance in the machine file",
+                               tool.number));
+    else if (named && tolerance < last_digit)
+      errors.push_back(fail_at(stated > 0 ? place("check_tolerance") : at,
+                               "tool {}: a tolerance of {:g} mm is below {:g}, the last digit of this control",
+                               tool.number, tolerance, last_digit));
+    else if (stated > 0 && !named)
+      errors.push_back(
+          fail_at(place("check_tolerance"),
+                  "check_tolerance = {:g}: the lines of tool_check in the machine file name no {{tolerance}}, "
+                  "they let {:g} mm pass",
+                  stated, check.tolerance_mm.value_or(0)));
+    if (const double above = check.position_mm.z() + tool.length_mm + check.clearance_mm; above > top)
+      errors.push_back(
+          fail_at(place("length"),
+                  "tool {} is too long for the tool setter: with its tip {:g} mm above it Z would be {:.4f}, "
+                  "its top is {:.4f}",
+                  tool.number, check.clearance_mm, above, top));
+  }
+}
+
 }  // namespace
 
 ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional<double> part_diameter_mm) {
@@ -171,6 +222,7 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
     errors.push_back(fail_at(job.where("program.restart_numbers"),
                              "restart_numbers: dialect \"{}\" has {}, leave it out", dialect->name,
                              dialect->block_numbers ? "a number in every block" : "no numbers of blocks"));
+  if (dialect) refuse_checks(job, machine, *dialect, errors);
   if (dialect && job.program.tilted_planes) refuse_planes(job, machine, *dialect, errors);
   if (!errors.empty()) return errors;
   return machine;

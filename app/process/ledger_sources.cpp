@@ -22,6 +22,7 @@ const char* help_against(proof::ErrorSource source) {
     case ErrorSource::tool_form:
     case ErrorSource::half_angle:
     case ErrorSource::run_out: return "a better tool, or the same one measured more closely";
+    case ErrorSource::tool_length: return "a tool setter that measures more closely (tool_check.uncertainty)";
     case ErrorSource::pivots: return "pivots that are measured more closely";
     case ErrorSource::flank_solve:
     case ErrorSource::scallop:
@@ -72,6 +73,9 @@ void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::
   ledger.push_back(
       entry(proof::ErrorSource::path_blending, double(float(blend_mm)), read.blend_mm,
             blend_mm > 0 ? "the tolerance that the text grants the control" : "the text grants the control none"));
+  if (program.check_uncertainty_mm > 0 || read.length_off_mm > 0)
+    ledger.push_back(entry(proof::ErrorSource::tool_length, program.check_uncertainty_mm, read.length_off_mm,
+                           "checks of the tools measure their lengths (tool_check.uncertainty)"));
 }
 
 std::vector<std::string> what_would_help(const std::vector<proof::LedgerEntry>& ledger, const proof::GougeResult& gouge,

@@ -28,7 +28,7 @@ namespace toothpath::process {
 /// Largest error of the tool axis from rounding the words of both rotaries, rad.
 [[nodiscard]] double rotary_rounding(const joints::AxisProgram& program);
 
-/// Axis linearisation, rounding, path blending.
+/// Axis linearisation, rounding, path blending; tool length where checks measure it.
 /// @param blend_mm how far the control may round the corners of the path; 0: the dialect has no word for it
 void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::AxisProgram& program,
                          const std::optional<readback::ClComparison>& met, const readback::ReadBack& read,

@@ -13,6 +13,7 @@
 #include "postproc/joints/tooth_order.h"
 #include "postproc/text/clamps.h"
 #include "postproc/text/lines.h"
+#include "postproc/text/tool_checks.h"
 #include "postproc/text/writer.h"
 #include "postproc/tool_life/change.h"
 
@@ -36,6 +37,17 @@ double tool_changes(const joints::AxisProgram& program) {
     before = o.tool_number;
   }
   return changes;
+}
+
+/// What checks of the tools trust the machine and its control with.
+void note_check_trust(report::RunReport& report, const job::Job& job, const machines::Machine& machine) {
+  const controls::Control* control = controls::find(machine.dialect);
+  if (job.program.text.checks == text::ToolChecks::none || !machine.tool_check || control == nullptr) return;
+  const bool own = !machine.tool_check->lines.empty();
+  report.warnings.push_back(fmt::format(
+      "{}, tool_check: it is trusted that the lines move no rotary, go straight down to the setter from {:g} mm above "
+      "it and straight up, and stop the program where a tool is broken{}{}",
+      job.machine.file, machine.tool_check->clearance_mm, own ? "" : "; ", own ? "" : control->words.check_trust));
 }
 
 double shown(const joints::AxisRange& axis, double value) { return axis.rotary ? degrees(value) : value; }
@@ -76,6 +88,7 @@ report::RunReport report_of(const std::string& command, const job::Job& job, con
             .value_or(control->words.planes.assumed)));
   report.warnings = job.warnings;
   report.warnings.insert(report.warnings.end(), gear_warnings.begin(), gear_warnings.end());
+  note_check_trust(report, job, machine);
   return report;
 }
 
@@ -83,6 +96,14 @@ void note_axis_program(report::RunReport& report, const job::Job& job, const mac
                        std::span<const path::ClPath* const> paths, const joints::AxisProgram& program) {
   report.axes = program.ranges;
   report.tool_uses = program.tool_uses;
+  for (const joints::AxisOperation& op : program.operations) {
+    const int checks = int{op.check_ahead} + int{op.check_behind};
+    if (checks == 0) continue;
+    const auto same = std::find_if(report.tool_checks.begin(), report.tool_checks.end(),
+                                   [&](const report::ToolCheckUse& use) { return use.tool == op.tool_number; });
+    if (same != report.tool_checks.end()) same->checks += checks;
+    else report.tool_checks.push_back({op.tool_number, checks, op.check_tolerance_mm});
+  }
   if (machine.post.index_loop.value_or(false) && !program.loop && program.teeth > 1 && *program.no_loop != 0) {
     const SourcePosition at = machine.where("post.index_loop");
     report.warnings.push_back(
@@ -93,7 +114,7 @@ void note_axis_program(report::RunReport& report, const job::Job& job, const mac
   report.has_acceleration = timed;
   report.feed_minutes = timed ? program.accelerated.feed : program.feed_minutes;
   report.total_minutes = timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes;
-  report.total_minutes += program.clamp_minutes;
+  report.total_minutes += program.clamp_minutes + program.check_minutes;
   report.time_model = program.time_model;
   if (machine.tool_change_min) {
     report.tool_change_minutes = tool_changes(program) * *machine.tool_change_min;
@@ -108,14 +129,15 @@ void note_axis_program(report::RunReport& report, const job::Job& job, const mac
   report.block_times = report::block_times_of(program);
   for (const joints::AxisOperation& o : program.operations) {
     const auto& asked = job.operations[static_cast<std::size_t>(o.operation)];
-    report::OperationReport operation{o.operation,
-                                      o.type,
-                                      o.tool_number,
-                                      asked.speed_rpm,
-                                      asked.feed_mm_min,
-                                      0,
-                                      timed ? o.accelerated.feed : o.feed_minutes,
-                                      (timed ? o.accelerated.rapid : o.rapid_minutes) + o.clamp_minutes};
+    report::OperationReport operation{
+        o.operation,
+        o.type,
+        o.tool_number,
+        asked.speed_rpm,
+        asked.feed_mm_min,
+        0,
+        timed ? o.accelerated.feed : o.feed_minutes,
+        (timed ? o.accelerated.rapid : o.rapid_minutes) + o.clamp_minutes + o.check_minutes};
     if (o.end_place >= 0) operation.places = {o.first_place, o.end_place};
     operation.share = double(o.places(program.teeth)) / program.teeth;
     for (const path::ClPath* path : paths)
@@ -193,9 +215,13 @@ std::optional<Diagnostic> no_contour_word(const job::Job& job, const text::NcDia
                           : ""));
 }
 
-/// What clamps take.
+/// What clamps and checks of the tools take, and where the checks stand.
 void note_text_times(joints::AxisProgram& program, const job::Job& job, const text::NcDialect& dialect) {
   note_clamp_times(program, dialect, job.program.text.stops == text::Stops::teeth);
+  std::map<int, double> tolerance_mm;
+  for (const tool::ToolAssembly& tool : job.tools)
+    if (tool.check_tolerance_mm > 0) tolerance_mm[tool.number] = tool.check_tolerance_mm;
+  note_tool_checks(program, dialect, job.program.text, tolerance_mm);
 }
 
 /// Programs that hold a part each, written and read back: numbers and names behind those of the whole program.
@@ -236,8 +262,8 @@ Result<std::vector<PostedPart>> post_parts(joints::AxisProgram& whole, const tex
                    0};
     const bool timed = program.has_acceleration;
     out.feed_minutes = timed ? program.accelerated.feed : program.feed_minutes;
-    out.total_minutes =
-        (timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes) + program.clamp_minutes;
+    out.total_minutes = (timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes) +
+                        program.clamp_minutes + program.check_minutes;
     for (const joints::AxisOperation& op : program.operations)
       if (out.tools.empty() || out.tools.back() != op.tool_number) out.tools.push_back(op.tool_number);
     if (request.machine.tool_change_min)
@@ -336,6 +362,7 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   text::note_corners(posted.axes, *dialect, header);
   if (posted.axes.corner_tolerance_mm > 0) estimate_times(posted.axes, machine);
   if (auto lasting = change_tools(job, machine, posted.axes)) return *lasting;
+  if (text::divide_for_checks(posted.axes, job.program.text)) estimate_times(posted.axes, machine);
   note_text_times(posted.axes, job, *dialect);
   auto text = clock.run("NC text", [&] { return text::write_nc(posted.axes, *dialect, header); });
   if (!text) return located(job, "machine.file", text.error());

@@ -51,6 +51,7 @@ proof::ProofLimits proof_limits(const job::Job& job, double proof_mm) {
 
 readback::AskedConditions asked_conditions(const job::Job& job, std::span<const path::ClPath* const> paths) {
   readback::AskedConditions asked;
+  asked.tool_checks = job.program.text.checks != text::ToolChecks::none;
   for (const path::MillingOperation& o : job.operations) {
     const double raise = o.chip_load_mm > 0 && !o.finishes() ? path::MillingOperation::kMostRaise : 1;
     const auto tool = static_cast<std::size_t>(o.tool);

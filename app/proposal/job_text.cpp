@@ -115,6 +115,7 @@ std::string tool_text(const tool::ToolAssembly& tool, double depth) {
   text += line("holder", "[" + holder + "]", "[lower diameter, upper diameter, height] from below");
   text += line("stick_out", real(tool.stick_out_mm), "lower face of the holder to the tip");
   text += line("teeth", fmt::format("{}", tool.teeth));
+  if (tool.check_tolerance_mm > 0) text += line("check_tolerance", real(tool.check_tolerance_mm));
   if (tool.life_min > 0) text += line("life", real(tool.life_min), "minutes of cutting");
   if (!tool.sisters.empty()) text += line("sisters", fmt::format("[{}]", fmt::join(tool.sisters, ", ")));
   return text;

@@ -107,6 +107,9 @@ constexpr Meaning kJobMeanings[] = {
     {"tool.life",
      "Minutes of feed moves that the tool lasts. A program that needs more of it goes on with a sister between two "
      "teeth."},
+    {"tool.check_tolerance",
+     "How far its length may be off before a check stops the program (program.tool_check); left out: what the machine "
+     "file says ([dialects](dialects.md#checks-of-the-tools))."},
     {"tool.sisters",
      "Numbers of tools of the same form in the magazine that go on, one after the other, when it is used up."},
     {"tool.meridian", "CSV file beside the job with the measured error of the cutter's outline: `t,f` in mm and um."},
@@ -159,6 +162,12 @@ constexpr Meaning kJobMeanings[] = {
      "`operations`: beside the program one for every operation, `program_1` and so on, to be run one after the other."},
     {"program.teeth_per_program",
      "The same, and of an operation with more teeth several: each has so many at most, in the order of the teeth."},
+    {"program.tool_check",
+     "Where the length of the tool is checked at the tool setter of the machine, which stops the program: at changes "
+     "of "
+     "the tool, both of the one that comes and the one that goes; at operations too; between teeth too "
+     "([dialects](dialects.md#checks-of-the-tools))."},
+    {"program.tool_check_teeth", "With tool_check = \"teeth\": so many teeth at most between two checks."},
     {"program.contour_tolerance",
      "How far the text allows the control to leave the path (CYCLE832, cycle 32); counts in the proof. Left out: the "
      "share of what is left of the gouge tolerance with which the time is least."},

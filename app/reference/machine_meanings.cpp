@@ -20,6 +20,24 @@ constexpr Meaning kMachineMeanings[] = {
     {"spindle.max_speed", "Highest speed."},
     {"spindle.tool_change",
      "From the last move of one tool to the first of the next; left out: tool changes are not in any time."},
+    {"tool_check",
+     "How tools are checked at the tool setter, for jobs that ask for it "
+     "([dialects](dialects.md#checks-of-the-tools))."},
+    {"tool_check.lines",
+     "Lines that check the tool in the spindle, templates; left out: those of the control, where it has a documented "
+     "cycle."},
+    {"tool_check.position",
+     "Where the tool setter stands, machine coordinates: X and Y of the spindle above it, Z where the tip of a tool "
+     "touches it."},
+    {"tool_check.clearance", "So far above that the way to the setter ends; from there on the lines go."},
+    {"tool_check.feed", "Feed towards the setter, where the lines name {feed}."},
+    {"tool_check.tolerance",
+     "How far a length may be off before the program stops, of tools that state no check_tolerance; of lines that name "
+     "no {tolerance} what they let pass."},
+    {"tool_check.uncertainty",
+     "Stated where the lines let the control take the length that they measure: how far that may be off; counts in the "
+     "proof. Left out: the lines compare and nothing else."},
+    {"tool_check.time", "What a check takes in all, for the times; left out: nothing."},
     {"limits", "What the machine takes."},
     {"limits.cutting_feed", "Highest feed in the cut."},
     {"limits.table_diameter", "Largest circle that fits on the table."},

@@ -386,6 +386,8 @@ void add_motion(Json& json, const RunReport& r) {
           {{"op", s.operation}, {"places", {s.first_place, s.end_place}}, {"minutes", s.minutes}});
     json["tool_life"].push_back(std::move(entry));
   }
+  for (const ToolCheckUse& use : r.tool_checks)
+    json["tool_checks"].push_back({{"tool", use.tool}, {"checks", use.checks}, {"tolerance", use.tolerance_mm}});
   if (r.restart) json["restart"] = {{"op", r.restart->operation}, {"tooth", r.restart->tooth}};
   Json tolerances = Json::array();
   for (const auto& t : r.length_tolerances) {

@@ -80,6 +80,12 @@ struct LengthTolerance {
       too_short_mm;  ///< what a finishing operation may leave is not exceeded; none: another operation cuts there
 };
 
+/// A tool whose length the program checks.
+struct ToolCheckUse {
+  int tool = 0, checks = 0;
+  double tolerance_mm = 0;  ///< the program stops where the length is further off
+};
+
 /// Poles of a rotary that the program passes (docs/axis_motion.md).
 struct PolesReport {
   std::size_t passages = 0;  ///< of one tooth
@@ -156,6 +162,7 @@ struct RunReport {
   int teeth = 0, tooth_stride = 1;                   ///< of the program: place n cuts tooth n * stride mod teeth
   std::optional<joints::ProgramRestart> restart;     ///< the program begins there
   std::vector<joints::ToolUse> tool_uses;            ///< of tools whose life is stated
+  std::vector<ToolCheckUse> tool_checks;             ///< in the order of their first check
   std::vector<PartReport> parts;                     ///< programs beside the whole one, in their order
   std::optional<restart::RestartMenu> restart_menu;  ///< where it can be taken up again
   std::vector<LengthTolerance> length_tolerances;

@@ -110,6 +110,7 @@ enum class ErrorSource : std::uint8_t {
   half_angle,
   run_out,
   pivots,
+  tool_length,
   verification,
   deflection
 };
@@ -128,6 +129,7 @@ enum class ErrorSource : std::uint8_t {
     case ErrorSource::half_angle: return "half angle";
     case ErrorSource::run_out: return "run-out";
     case ErrorSource::pivots: return "pivots";
+    case ErrorSource::tool_length: return "tool length";
     case ErrorSource::verification: return "verification";
     case ErrorSource::deflection: return "deflection";
   }

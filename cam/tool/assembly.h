@@ -27,6 +27,7 @@ struct ToolAssembly {
   std::vector<HolderSegment> holder;
   double stick_out_mm = 0;          ///< tip to the lower face of the holder
   int teeth = 2;                    ///< cutting edges
+  double check_tolerance_mm = 0;    ///< how far its length may be off where it is checked; 0: not stated
   double life_min = 0;              ///< minutes of cutting that it lasts; 0: not stated
   std::vector<int> sisters;         ///< T of tools of the same form that go on when it is used up, in their order
   int sister_of = 0;                ///< T of the tool in whose place it goes on; 0: it is no sister

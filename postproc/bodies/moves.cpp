@@ -97,7 +97,7 @@ MovesJudge::Span MovesJudge::span_to(const readback::ExecutedMove& move) const {
   const auto length = lengths_.find(move.tool);
   const double tool = length == lengths_.end() ? 0 : length->second;
   span.off_rad = double(move.blend_axis_rad);
-  span.off_mm = kRoundOff + 3 * kAlike + double(move.blend_mm);
+  span.off_mm = kRoundOff + 3 * kAlike + double(move.blend_mm) + readback::length_off_mm(move, machine_.tool_check);
   if (span.off_rad > 0) {
     const Vec3 tip = move.tcp ? move.tip : machine_.chain.forward(joints_of(span.to), tool).tip_mm;
     span.off_mm += 2 * span.off_rad * (reach_of(machine_.chain, tip) + head_arm(machine_.chain, tool));

@@ -8,6 +8,7 @@
 
 #include "geometry/base/angle.h"
 #include "postproc/controls/registry.h"
+#include "postproc/text/tool_checks.h"
 #include "postproc/timing/path_timer.h"
 
 namespace toothpath::controls {
@@ -43,6 +44,7 @@ class Judge {
     clamps();
     references();
     own_lines();
+    tool_check();
     return std::move(errors_);
   }
 
@@ -189,6 +191,36 @@ class Judge {
     if (!named) refuse("post.tool_change", "post.tool_change names {{tool}} in no line: it must fetch the tool");
   }
 
+  /// The setter stands within the travel, and the lines name values that there are; what they let pass is said.
+  void tool_check() {
+    if (!machine_.tool_check) return;
+    const machines::ToolCheck& check = *machine_.tool_check;
+    if (words_.write != nullptr)
+      return refuse("tool_check", "tool_check: dialect \"{}\" has no words for it, leave the table out", words_.name);
+    const std::vector<std::string>& lines = check.lines.empty() ? words_.check_lines : check.lines;
+    if (lines.empty())
+      refuse("tool_check",
+             "tool_check: dialect \"{}\" has no documented cycle for it: tool_check.lines = [..] says what the control "
+             "of this machine is called with",
+             words_.name);
+    const auto names = text::names_of_check_lines();
+    bool tolerance = false;
+    for (const std::string& line : lines) {
+      tolerance = tolerance || line.find("{tolerance}") != std::string::npos;
+      if (const auto name = text::unknown_name(line, names))
+        refuse("tool_check.lines", "tool_check.lines: \"{}\" names {{{}}}, which is none of {{{}}}", line, *name,
+               fmt::join(names, "} {"));
+    }
+    if (!tolerance && !lines.empty() && !check.tolerance_mm)
+      refuse("tool_check.lines",
+             "tool_check.lines name no {{tolerance}}: tool_check.tolerance must say what they let pass");
+    for (std::size_t a = 0; a < 2; ++a)
+      if (const auto& axis = machine_.chain.linear[a];
+          check.position_mm[static_cast<int>(a)] < axis.min_mm || check.position_mm[static_cast<int>(a)] > axis.max_mm)
+        refuse("tool_check.position", "tool_check.position: {} = {:g} is outside its travel, {:g} to {:g}", "XY"[a],
+               check.position_mm[static_cast<int>(a)], axis.min_mm, axis.max_mm);
+  }
+
   /// Every axis has a place, within its travel.
   void references() {
     const machines::KinematicChain& chain = machine_.chain;
@@ -246,6 +278,13 @@ void apply_corners(text::NcDialect& d, const machines::PostSettings& post) {
   d.smoothing_off.push_back(usual);
 }
 
+/// The check of the machine, with lines of the control where the file has none.
+std::optional<machines::ToolCheck> check_of(const machines::Machine& machine, const text::NcDialect& words) {
+  auto check = machine.tool_check;
+  if (check && check->lines.empty()) check->lines = words.check_lines;
+  return check;
+}
+
 /// A control that states how far it leaves an exact path is one that stops there.
 timing::Corners corners_of(const text::NcDialect& words, const machines::PostSettings& post) {
   if (words.exact_path_mm > 0) return timing::Corners::exact;
@@ -283,6 +322,7 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
   d.own_end = post.own_lines.end;
   if (post.own_lines.tool_change) d.tool_call = *post.own_lines.tool_change;
   apply_corners(d, post);
+  d.tool_check = check_of(machine, d);
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) d.clamps[k] = machine.chain.rotary(k).clamp;
   for (const auto& [coolant, words] : post.coolant) d.coolant[coolant] = words;
   return d;
@@ -328,6 +368,7 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
     c.reference[n].emplace();
     std::copy_n(place.begin(), std::min<std::size_t>(place.size(), 5), c.reference[n]->begin());
   }
+  c.tool_check = check_of(machine, control->words);
   c.coolants = control->words.coolant;
   for (const auto& [coolant, words] : machine.post.coolant) {
     c.coolants[coolant] = words;
@@ -343,6 +384,9 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
   }
   for (const auto& t : tools) {
     if (!c.tool_length_mm.emplace(t.number, t.length_mm).second) return fail("tool number {} occurs twice", t.number);
+    if (c.tool_check)
+      c.check_tolerance_mm[t.number] =
+          t.check_tolerance_mm > 0 ? t.check_tolerance_mm : c.tool_check->tolerance_mm.value_or(0);
     if (const auto cutter = tool::apt_cutter(t)) c.cutters[t.number] = *cutter;
   }
   c.work_offsets[setup.work_offset] = setup.work_offset_at_mm;

@@ -158,6 +158,10 @@ struct AxisOperation {
   [[nodiscard]] int end_of(int teeth_of_gear) const { return end_place < 0 ? teeth_of_gear : end_place; }
   [[nodiscard]] int places(int teeth_of_gear) const { return end_of(teeth_of_gear) - first_place; }
   double clamp_minutes = 0;  ///< on top: what clamping the rotaries takes (text::note_clamp_times)
+  /// The tool is checked ahead of the teeth, behind them (text::note_tool_checks).
+  bool check_ahead = false, check_behind = false;
+  double check_tolerance_mm = 0;  ///< .. and the program stops where its length is further off
+  double check_minutes = 0;       ///< .. on top of all times
 };
 
 /// Least and greatest position of one axis over all teeth, against its limits [mm or rad, machine coordinates].
@@ -239,6 +243,8 @@ struct AxisProgram {
   std::string time_model;                           ///< what the times hold and assume
   TimedMinutes accelerated;                         ///< over all operations
   double clamp_minutes = 0;                         ///< on top of all times, over all operations
+  double check_minutes = 0;                         ///< the same of checks of the tools
+  double check_uncertainty_mm = 0;                  ///< a checked tool has the length that was measured, off by so much
   std::optional<choice::TravelOffer> offer;         ///< empty: not looked for, or too many directions of the part
   std::size_t inserted_blocks = 0;                  ///< by the subdivision
   std::size_t dropped_blocks = 0;                   ///< all words equal to those before

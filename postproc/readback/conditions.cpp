@@ -19,6 +19,11 @@ constexpr double kSameSpeed = 1e-3;     // of S
 void keep_most(ValueAt& at, double value, int line) {
   if (at.line == 0 || value > at.value) at = {value, line};
 }
+std::string unchecked_text(const std::string& at, int tool, const std::string& times) {
+  return fmt::format(
+      "{} cuts with T{}, which no check has met since it came{}: the job asks for one (program.tool_check)", at, tool,
+      times);
+}
 void keep_least(ValueAt& at, double value, int line) {
   if (at.line == 0 || value < at.value) at = {value, line};
 }
@@ -90,6 +95,7 @@ void ConditionJudge::add(const ExecutedMove& m) {
       if (step.way_mm > kStill) clamps(m);
       else end_of_stretch();  // a turn between cuts, with TCP
       if (m.in_doubt) note(Kind::stop_in_doubt, 0, m, 0);
+      if (asked_.tool_checks && !m.checked) note(Kind::unchecked, m.tool, m, 0);
       if (m.dwell_min > 0 && !up_) note(Kind::dwell, 0, m, double(m.dwell_min) * 60);
     }
   }
@@ -273,6 +279,7 @@ std::string ConditionJudge::text(Kind kind, int operation, int detail, const Fau
       return fmt::format("{} cuts while {} stands and is not clamped{}: {} ahead of the cut clamps it", at,
                          control_.letters[a], times, control_.clamps[a]->on);
     }
+    case Kind::unchecked: return unchecked_text(at, detail, times);
     case Kind::dwell:
       return fmt::format("{} waits {:.6g} s in a cut{}: the tool rubs where it stands", at, f.worst, times);
     case Kind::short_block:

@@ -25,6 +25,7 @@ struct AskedCut {
 struct AskedConditions {
   std::vector<AskedCut> operations;          ///< by their number
   std::optional<machines::Coolant> coolant;  ///< stated by the job; nothing: whatever the program does
+  bool tool_checks = false;                  ///< every tool is checked when it has come
 };
 
 /// A greatest or least value and the line where it stands.
@@ -61,7 +62,8 @@ struct ConditionsFound {
 /// than `speed_factor`; another tool than the job's; the job's coolant not on. Warnings: a cut more than 1.5 times as
 /// fast as asked (or `feed_factor`, if that is less); S off the job's; a coolant that the job has off; cuts in which a
 /// rotary stands that the machine could hold and the program does not; cuts behind a stop that may have ended spindle
-/// and coolant; a dwell in a cut; blocks shorter than `limits.min_block_ms`.
+/// and coolant; cuts with a tool that no check has met, where the job asks for checks; a dwell in a cut; blocks shorter
+/// than `limits.min_block_ms`.
 class ConditionJudge {
  public:
   /// All must outlive it.
@@ -90,6 +92,7 @@ class ConditionJudge {
     other_coolant,
     stop_in_doubt,
     unclamped,
+    unchecked,
     dwell,
     short_block  // warnings
   };

@@ -8,6 +8,7 @@
 
 #include "geometry/base/angle.h"
 #include "postproc/choice/solution.h"
+#include "postproc/tool_check/lines.h"
 
 namespace toothpath::readback {
 namespace {
@@ -16,9 +17,11 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTipStill = 1e-9;    // mm: round-off of a tip that does not move
 constexpr double kZeroRotary = 1e-9;  // deg
 constexpr double kLongestBlock_min = 1440;
-constexpr double kFullTurn = 360;         // deg
-constexpr double kHalfTurn = 180 - 1e-6;  // deg: from here on round-off decides which way is the nearer one
-constexpr double kBelowZero = 1e-9;       // deg: round-off of a remainder
+constexpr double kFullTurn = 360;             // deg
+constexpr double kHalfTurn = 180 - 1e-6;      // deg: from here on round-off decides which way is the nearer one
+constexpr double kBelowZero = 1e-9;           // deg: round-off of a remainder
+constexpr double kLastDigit = 0.5e-3 + 1e-9;  // mm: half of the last one that lines of a check are printed with
+constexpr double kAtTop = 1e-3;               // mm
 constexpr double kFlip = 170;  // deg: a tool vector that turns further in one block leaves the plane of the turn open
 
 bool known(const std::array<double, 5>& joints) {
@@ -140,6 +143,7 @@ NcExecution::Problem NcExecution::change_tool() {
   if (plane_) return "tool change in a tilted plane: it must be switched off ahead";
   if (!retracted_) return "tool change without a machine retract before it";
   if (next_tool_ < 0) return "tool change without a T word";
+  checked_ = checked_ && tool_ == next_tool_;
   tool_ = next_tool_;
   clamps_.fill(Clamp::unknown);
   return std::nullopt;
@@ -160,6 +164,131 @@ void NcExecution::stop() {
   if (rules_.stop == ProgramStop::in_doubt) return;
   spindle_ = false;
   coolants_ = 0;
+}
+
+std::optional<NcExecution::CheckFault> NcExecution::check_tool(int tool, std::span<const std::string_view> lines,
+                                                               std::int32_t line) {
+  if (auto bad = may_check()) return CheckFault{0, 1, std::move(*bad)};
+  if (tool != tool_)
+    return CheckFault{0, 1, fmt::format("a check of tool {} while tool {} is in the spindle", tool, tool_)};
+  if (lines.size() < check_lines())
+    return CheckFault{0, 1,
+                      fmt::format("{} lines behind the check of the tool, it has {}", lines.size(), check_lines())};
+  if (auto bad = check_says(lines)) return bad;
+  if (auto bad = check_ways(line)) return CheckFault{0, 1, std::move(*bad)};
+  forget_modes();
+  checked_ = true;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::may_check() const {
+  if (tool_ < 0) return "a check of the tool without a tool in the spindle";
+  if (control_.tool_length_mm.count(tool_) == 0) return fmt::format("tool {} is not in the tool list", tool_);
+  if (tcp_) return "a check of the tool with TCP on";
+  if (plane_) return "a check of the tool in a tilted plane: it must be switched off ahead";
+  if (spindle_) return "a check of the tool while the spindle turns: M5 must stand ahead";
+  if (feed_mode_ == Feed::inverse_time) return "a check of the tool in G93";
+  if (site_smoothing_) return "a check of the tool while the control's own smoothing is on";
+  for (std::size_t a = 3; a < 5; ++a)
+    if (zero_[a] != 0)
+      return fmt::format("a check of the tool while {} counts from {} deg, limit 0", control_.letters[a], zero_[a]);
+  if (!retracted_) return "a check of the tool without a machine retract ahead of it";
+  if (!(joints_[2] >= control_.top_mm - kAtTop))
+    return fmt::format("a check of the tool with Z at {:.4f}, it must stand at its top, {:.4f}", joints_[2],
+                       control_.top_mm);
+  return std::nullopt;
+}
+
+/// Every line is that of the machine, and its numbers are the ones that they must be.
+std::optional<NcExecution::CheckFault> NcExecution::check_says(std::span<const std::string_view> lines) const {
+  const machines::ToolCheck& check = *control_.tool_check;
+  const double length = control_.tool_length_mm.at(tool_), top = control_.top_mm;
+  std::map<std::string, double, std::less<>> meant = {{"tool", tool_},
+                                                      {"length", length},
+                                                      {"clearance", check.clearance_mm},
+                                                      {"x", check.position_mm.x()},
+                                                      {"y", check.position_mm.y()},
+                                                      {"z", check.position_mm.z()},
+                                                      {"feed", check.feed_mm_min},
+                                                      {"top", top}};
+  if (offset_) meant["work_top"] = top - length - offset_->z();
+  const auto stated = control_.check_tolerance_mm.find(tool_);
+  const double most = stated == control_.check_tolerance_mm.end() ? 0 : stated->second;
+  std::optional<double> label;
+  for (std::size_t i = 0; i < check.lines.size(); ++i) {
+    const auto numbers = tool_check::numbers_of(check.lines[i], lines[i]);
+    if (!numbers)
+      return CheckFault{i + 1, 1,
+                        fmt::format("line {} of the check of the tool must be \"{}\"", i + 1, check.lines[i])};
+    for (const tool_check::SaidNumber& n : *numbers) {
+      const auto wrong = [&](double must) {
+        return CheckFault{
+            i + 1, n.column,
+            fmt::format("the check of tool {} says {} = {:g}, must be {:g}", tool_, n.name, n.value, must)};
+      };
+      if (n.name == "label" || n.name == "label+1") {
+        const double base = n.value - (n.name == "label" ? 0 : 1);
+        if (label && base != *label) return wrong(*label + n.value - base);
+        label = base;
+      } else if (n.name == "tolerance") {
+        if (!(n.value > 0 && n.value <= most + 1e-9))
+          return CheckFault{i + 1, n.column,
+                            fmt::format("the check of tool {} lets {:g} mm pass, limit {:g}: the tolerance of the job "
+                                        "or of the machine file",
+                                        tool_, n.value, most)};
+      } else if (const auto found = meant.find(n.name); found == meant.end()) {
+        return CheckFault{i + 1, n.column, fmt::format("the check names {{{}}}, which is not known here", n.name)};
+      } else if (!(std::abs(n.value - found->second) <= kLastDigit)) {
+        return wrong(found->second);
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// At the top over the setter, down to its clearance: what follows is meant to touch.
+NcExecution::Problem NcExecution::check_ways(std::int32_t line) {
+  const machines::ToolCheck& check = *control_.tool_check;
+  Move across;
+  across.rapid = across.machine_frame = across.to_reference = true;
+  across.has = {true, true, false, false, false};
+  across.axis = {check.position_mm.x(), check.position_mm.y(), 0, 0, 0};
+  Move down = across;
+  down.has = {false, false, true, false, false};
+  down.axis[2] = check.position_mm.z() + control_.tool_length_mm.at(tool_) + check.clearance_mm;
+  if (down.axis[2] > control_.top_mm + kAtTop)
+    return fmt::format("tool {} is too long for the setter: Z {:.4f} above it, its top is {:.4f}", tool_, down.axis[2],
+                       control_.top_mm);
+  double ways = 0;
+  for (const Move& m : {across, down}) {
+    const auto from = joints_;
+    if (auto bad = move_to(m, line)) return bad;
+    double way = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+      if (control_.rapid_speed[a] > 0 && known(from))
+        way = std::max(way, std::abs(joints_[a] - from[a]) / control_.rapid_speed[a]);
+    ways += way;
+  }
+  dwell_min_ += std::max(0.0, check.minutes - ways);
+  return std::nullopt;
+}
+
+/// Whatever a cycle of the builder leaves.
+void NcExecution::forget_modes() {
+  unit_ = zeros_cleared_ = spindle_set_ = false;
+  distance_ = Distance::unsaid;
+  feed_mode_ = Feed::none;
+  feed_.reset();
+  length_.reset();
+  length_of_ = -1;
+  offset_.reset();
+  frame_deg_ = 0;
+  coolants_ = 0;
+  clamps_.fill(Clamp::unknown);
+  set_blend(0);
+  blend_axis_rad_.reset();
+  path_weights_.reset();
+  retracted_ = false;
 }
 
 NcExecution::Problem NcExecution::dwell(double minutes) {
@@ -521,6 +650,7 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   e.speed_rpm = spindle_ ? static_cast<float>(speed_) : 0;
   e.coolants = coolants_;
   e.in_doubt = spindle_doubt_ || coolant_doubt_;
+  e.checked = checked_;
   e.dwell_min = static_cast<float>(std::exchange(dwell_min_, 0));
   e.corners = path_mode_;
   e.tolerance_mm = static_cast<float>(path_tolerance_mm_);

@@ -8,6 +8,7 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -93,6 +94,18 @@ class NcExecution {
   void spindle_off() { spindle_ = false; }
   /// M0, or M1, which may stop like it.
   void stop();
+  /// What is wrong with a check of the tool, in which of its lines (0: its comment) and column.
+  struct CheckFault {
+    std::size_t line = 0;
+    int column = 1;
+    std::string text;
+  };
+  /// The tool goes to the setter, and the program stops where its length is not that of the list within a tolerance.
+  /// What the lines do beyond that is not known: all modes must be said again behind them, and Z goes to its top first.
+  /// @param tool  of the comment  @param lines  behind it, as many as the machine has, or up to the end of the text
+  std::optional<CheckFault> check_tool(int tool, std::span<const std::string_view> lines, std::int32_t line);
+  /// How many lines a check has; 0: the machine has none.
+  [[nodiscard]] std::size_t check_lines() const { return control_.tool_check ? control_.tool_check->lines.size() : 0; }
   /// Waits [min]; counts with the next move.
   Problem dwell(double minutes);
   /// Waits for so many turns of the spindle.
@@ -174,6 +187,10 @@ class NcExecution {
   Result<std::array<double, 5>> reference(std::size_t which, std::string_view word) const;
 
  private:
+  Problem may_check() const;
+  std::optional<CheckFault> check_says(std::span<const std::string_view> lines) const;
+  Problem check_ways(std::int32_t line);
+  void forget_modes();
   Problem move_to(const Move& m, std::int32_t line);
   Problem roll(Move& m);
   [[nodiscard]] bool at_zero(std::size_t axis) const;
@@ -222,6 +239,7 @@ class NcExecution {
   enum class Distance : std::uint8_t { unsaid, absolute, incremental } distance_ = Distance::unsaid;
   bool unit_ = false;
   bool spindle_doubt_ = false, coolant_doubt_ = false;  ///< a stop may have ended them
+  bool checked_ = false;                                // the tool, since it came
   double dwell_min_ = 0;                                ///< until the next move
   std::int32_t last_line_ = 0;                          ///< of a move
   std::size_t steps_ = 0, idle_ = 0;

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "postproc/tool_check/lines.h"
+
 namespace toothpath::readback {
 namespace {
 constexpr std::size_t kDeepestCall = 8;
@@ -71,7 +73,11 @@ constexpr std::string_view kOwnNames[] = {"_vmajor",
 }  // namespace
 
 NcFlow::NcFlow(std::string_view text, const std::string& file, bool o_words, const NcControl& control)
-    : file_(file), o_words_(o_words), max_steps_(control.max_steps), max_idle_(control.max_idle) {
+    : file_(file),
+      o_words_(o_words),
+      check_lines_(control.tool_check ? control.tool_check->lines.size() : 0),
+      max_steps_(control.max_steps),
+      max_idle_(control.max_idle) {
   split(text);
   parameters_.assign(kNumbered + 1, 0);
   parameter_set_.assign(kNumbered + 1, false);
@@ -195,6 +201,10 @@ std::optional<Diagnostic> NcFlow::find_labels() {
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const auto first = lines_[i].find_first_not_of(" \t");
     if (first == std::string_view::npos) continue;
+    if (check_lines_ > 0 && tool_check::checked_tool(lines_[i]) >= 0) {
+      i += check_lines_;
+      continue;
+    }
     const char c = lines_[i][first];
     if (c == '%') percents_.push_back(i);
     if (c == 'N' && !o_words_) note_number(i, lines_[i].substr(first + 1));

@@ -2,10 +2,12 @@
 // business of whoever runs it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -48,6 +50,16 @@ class NcFlow {
   void end() { ended_ = true; }
   void moved() { idle_ = 0; }  ///< the block made a move
 
+  /// Lines behind the one that is being executed, `most` of them or up to the end of the text.
+  [[nodiscard]] std::span<const std::string_view> ahead(std::size_t most) const {
+    return std::span(lines_).subspan(pc_, std::min(most, lines_.size() - pc_));
+  }
+  /// They are left out; a diagnostic in one of them (1: the first).
+  void leave_out(std::size_t count) { pc_ += count; }
+  [[nodiscard]] Diagnostic there(std::size_t behind, int column, std::string message) const {
+    return at(line_ + 1 + behind, column, std::move(message));
+  }
+
  private:
   struct Frame {  // of a call or a loop
     OWord kind = OWord::none;
@@ -84,6 +96,7 @@ class NcFlow {
 
   const std::string& file_;
   bool o_words_;
+  std::size_t check_lines_;  // behind the comment of a check of the tool: no business of the flow
   std::size_t max_steps_, max_idle_, idle_ = 0;
   std::vector<std::string_view> lines_;
   std::vector<std::size_t> percents_;

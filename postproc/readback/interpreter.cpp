@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "geometry/base/angle.h"
 #include "postproc/readback/flow.h"
+#include "postproc/tool_check/lines.h"
+#include "postproc/tool_check/unsaid.h"
 
 namespace toothpath::readback {
 namespace {
 
 constexpr unsigned kOffsets = 12;  // modal group
+constexpr unsigned kZeros = 32;    // beside the modal groups: G52
 
 class Interpreter {
  public:
@@ -37,7 +41,10 @@ class Interpreter {
   Problem block(const NcBlock& b) {
     if (b.operation >= 0) execution_.begin_operation(b.operation);
     if (b.tooth >= 0) execution_.begin_tooth(b.tooth);
-    if (b.words.empty()) return std::nullopt;
+    if (b.words.empty()) {
+      const int checked = execution_.check_lines() > 0 ? tool_check::checked_tool(flow_.text()) : -1;
+      return checked >= 0 ? check_tool(checked) : std::nullopt;
+    }
     if (b.skip)
       if (auto bad = skippable(b)) return bad;
     if (execution_.site_smoothing(flow_.text())) {
@@ -46,6 +53,24 @@ class Interpreter {
       return std::nullopt;
     }
     return words(b);
+  }
+
+  /// What the lines of a check leave is not known: all groups must be said again ahead of an axis word.
+  Problem check_tool(int tool) {
+    const auto lines = flow_.ahead(execution_.check_lines());
+    if (const auto bad = execution_.check_tool(tool, lines, flow_.line()))
+      return flow_.there(bad->line, bad->column, bad->text);
+    flow_.leave_out(lines.size());
+    flow_.moved();
+    motion_ = -1;
+    corners_said_ = false;
+    std::map<unsigned, const char*> modes = {{2, "G17"}, {3, "G90"}, {4, "G93 or G94"}, {5, "G21"},
+                                             {6, "G40"}, {8, "G80"}, {10, "G61 or G64"}};
+    if (language_.moves_zeros) modes[kZeros] = "G52 with 0 of all axes";
+    else modes[11] = "G92.1";
+    if (has_g(690)) modes[13] = "G69";
+    unsaid_.all(std::move(modes));
+    return std::nullopt;
   }
 
   // Words of one block, sorted by meaning before anything happens.
@@ -277,6 +302,7 @@ class Interpreter {
         return here(r.column, fmt::format("G52 {} is not in the subset: it moves the zero of rotaries alone",
                                           control_.letters[a]));
     }
+    if (all) unsaid_.said(kZeros);
     if (all) return placed(r.column, execution_.clear_zeros());
     for (std::size_t a = 3; a < 5; ++a)
       if (has[a])
@@ -383,6 +409,8 @@ class Interpreter {
       if (auto bad = placed(r.column, r.switch_tcp == 1 ? execution_.tcp_on() : execution_.tcp_off())) return bad;
     if (r.motion >= 0) motion_ = r.motion;
     if (r.g53 && !moves(r)) return here(r.column, "G53 without an axis word");
+    unsaid_.said_groups(r.groups);
+    if (!unsaid_.none() && (moves(r) || r.to_reference)) return here(r.column, unsaid_.text("an axis word"));
     if (r.to_reference) {
       if (auto bad = reference(r)) return bad;
     } else if (moves(r)) {
@@ -478,6 +506,7 @@ class Interpreter {
   NcFlow flow_;
   NcExecution execution_;
   int motion_ = -1;
+  tool_check::Unsaid unsaid_;
   bool corners_said_ =
       false;  // how far the control leaves corners: G61, G61.1, G64 P, or G64 with what the machine states
 };

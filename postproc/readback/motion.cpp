@@ -253,6 +253,7 @@ class TraceFollower {
       motion.axis_from = axis_from;
       motion.axis_to = axis_to;
       motion.deviation_mm = (m.tcp ? 0 : tip_left) + kRoundOff + double(m.blend_mm) + corner_mm +
+                            length_off_mm(m, control_.tool_check) +
                             shift_ * std::max(motion.tip_from.head<2>().norm(), motion.tip_to.head<2>().norm());
       motion.axis_deviation = axis_left + shift_ + double(m.blend_axis_rad) + corner_rad;
       motion.minutes = m.minutes / n;

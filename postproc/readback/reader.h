@@ -60,6 +60,9 @@ struct NcControl {
   std::optional<double> corner_mm;   ///< the machine file states it: the tip is off a corner by no more under G64
   /// Where G28 and G30 take the axes, machine coordinates, mm and deg; nothing: the machine file does not say.
   std::array<std::optional<std::array<double, 5>>, 2> reference;
+  /// Lines that check a tool, and the tolerance of its length by T; nothing: the machine has no such check.
+  std::optional<machines::ToolCheck> tool_check;
+  std::map<int, double> check_tolerance_mm;
   double top_mm = 0;                         ///< highest Z, machine coordinates of the gauge line
   std::vector<std::string> tcp_on, tcp_off;  ///< codes of the site that switch TCP (LinuxCNC)
   /// Lines of the machine file that switch the control's own smoothing on and off, and what the shop states for it.
@@ -115,11 +118,17 @@ struct ExecutedMove {
   bool known : 1 = false;          ///< all joints were known before and after
   bool in_doubt : 1 = false;       ///< a stop ahead may have ended spindle and coolant: the builder's business
   bool plane : 1 = false;          ///< in a tilted plane, or the turn of the rotaries to it
+  bool checked : 1 = false;        ///< the tool was checked since it came into the spindle
   std::uint8_t clamped = 0;        ///< bit a: the rotary is held
   std::uint8_t coolants = 0;       ///< machines::bit_of: it is on
   float speed_rpm = 0;             ///< of the spindle; 0: it stands
   std::uint64_t vector_print = 0;  ///< of the words of a tool vector, FNV-1a over their bytes; 0: rotary words
 };
+
+/// How far the length of the tool may be off in this move: where a check ahead has let the control measure it, mm.
+[[nodiscard]] inline double length_off_mm(const ExecutedMove& move, const std::optional<machines::ToolCheck>& check) {
+  return move.checked && check ? check->uncertainty_mm.value_or(0) : 0;
+}
 
 /// Executes `text` and hands every move to `sink`, in order. Stops with a located error (line and column of `file`) at
 /// anything that is not in the subset, at an undefined tool, offset, label or parameter, at a feed move without F or
@@ -193,6 +202,7 @@ struct ReadBack {
   std::vector<WornOut> worn_out;  ///< of these, those that cut for longer
   double blend_mm =
       0;  ///< largest tolerance of path blending in the feeds of `operations`, of all teeth where they are no copies
+  double length_off_mm = 0;  ///< the same of the lengths that checks of the tools have measured
   int mixed_rapid = 0;  ///< line of the first rapid that moves more than one group of axes, of all executed moves; 0:
                         ///< none does, or cutter locations
 };

@@ -124,10 +124,16 @@ struct NcDialect {
   /// Lines of the shop (post.start, ..): behind `start`, behind every tooth, behind `end`; its tool change stands in
   /// `tool_call`.
   NcLinesOfText own_start, own_between_teeth, own_end;
-  NcLinesOfText compensation;      ///< tool length, programs without TCP
-  NcLinesOfText tcp_compensation;  ///< the same with TCP
-  NcLinesOfText pause = {"M0"};    ///< waits for the start button
-  NcLinesOfText operation_end;     ///< ahead of coolant and spindle off
+  /// Check the tool in the spindle at the setter (tool_checks.h says the names in braces); empty: the control has no
+  /// documented cycle, the machine file says the lines. What they trust the control with, for those who list it.
+  NcLinesOfText check_lines;
+  std::string check_trust;
+  NcLinesOfText tool_recall;                      ///< behind a check: the length is said again
+  std::optional<machines::ToolCheck> tool_check;  ///< of the machine, with its lines or these
+  NcLinesOfText compensation;                     ///< tool length, programs without TCP
+  NcLinesOfText tcp_compensation;                 ///< the same with TCP
+  NcLinesOfText pause = {"M0"};                   ///< waits for the start button
+  NcLinesOfText operation_end;                    ///< ahead of coolant and spindle off
   NcLinesOfText spindle_off = {"M5"};
   std::map<machines::Coolant, machines::CoolantWords> coolant = {
       {machines::Coolant::mist, {"M7", "M9"}}, {machines::Coolant::flood, {"M8", "M9"}}};  ///< those of ISO 6983

@@ -180,10 +180,11 @@ std::vector<std::string> order_comments(const joints::AxisProgram& program) {
   for (auto& line : life_comments(program)) out.push_back(std::move(line));
   if (program.restart || program.part) {
     const bool timed = program.has_acceleration;
-    out.push_back(fmt::format(
-        "RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING{}",
-        (timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes) + program.clamp_minutes,
-        timed ? program.accelerated.feed : program.feed_minutes, timed ? "" : ", WITHOUT ACCELERATIONS"));
+    out.push_back(fmt::format("RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING{}",
+                              (timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes) +
+                                  program.clamp_minutes + program.check_minutes,
+                              timed ? program.accelerated.feed : program.feed_minutes,
+                              timed ? "" : ", WITHOUT ACCELERATIONS"));
   }
   return out;
 }

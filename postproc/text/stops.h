@@ -14,11 +14,21 @@ enum class StopWord : std::uint8_t {
   block_skip,     ///< M0 in a block that is left out where the switch is on
 };
 
+/// Where the length of the tool is checked at the tool setter of the machine.
+enum class ToolChecks : std::uint8_t {
+  none,
+  tool_changes,  ///< of a tool that has come, and of one that goes
+  operations,    ///< .. and ahead of every operation
+  teeth,         ///< .. and between teeth
+};
+
 /// What a job asks of the text.
 struct TextWishes {
   Stops stops = Stops::none;
   StopWord stop_word = StopWord::optional_stop;
   bool restart_numbers = false;  ///< N words where the program can be taken up again
+  ToolChecks checks = ToolChecks::none;
+  int teeth_between_checks = 0;  ///< at most; with `teeth`
 };
 
 }  // namespace toothpath::text

@@ -16,6 +16,7 @@
 #include "postproc/text/corners.h"
 #include "postproc/text/lines.h"
 #include "postproc/text/planes.h"
+#include "postproc/text/tool_checks.h"
 
 namespace toothpath::text {
 namespace {
@@ -153,12 +154,26 @@ class Writer {
     const Stops stops = header_.wishes.stops;
     if (at > 0 && ((stops == Stops::operations && begins) || (stops == Stops::tool_changes && changes))) stop();
     fill(changes ? dialect_.tool_call : dialect_.tool_keep);
+    if (op.check_ahead) {
+      if (changes) machine_retract();
+      check_tool(op, 2 * position);
+      fill(dialect_.tool_recall);
+    }
     fill(dialect_.tool_change);
     const auto next = std::find_if(all.begin() + position, all.end(),
                                    [&](const auto& other) { return other.tool_number != op.tool_number; });
     if (!changes || next == all.end()) return;
     values_["next"] = std::to_string(next->tool_number);
     fill(dialect_.tool_next);
+  }
+
+  /// With Z at its top. The lines may leave all modes and the tool as they like: every mode is said again, then Z.
+  void check_tool(const joints::AxisOperation& op, int check) {
+    out_.comment(check_comment(op));
+    out_.fill(dialect_.tool_check->lines,
+              check_values(values_, op, dialect_, kFirstLabel + 2 * operations() + 2 * check));
+    fill(dialect_.start);
+    machine_retract();
   }
 
   void set_values(const joints::AxisOperation& op, int position) {
@@ -225,6 +240,7 @@ class Writer {
     if (coolant_) out_.line(coolant_->off);
     fill(dialect_.spindle_off);
     machine_retract();
+    if (op.check_behind) check_tool(op, 2 * position + 1);
   }
 
   /// One tooth, its index angle given by the control's arithmetic.

@@ -14,6 +14,15 @@ struct BadFile {
 };
 
 inline constexpr BadFile kBadMachineFiles[] = {
+    {"tool setter without a place", "[chain]", "[tool_check]\ntolerance = 0.05\n\n[chain]",
+     "m.toml:17:1: error: tool_check.position is missing\n"},
+    {"tool setter with two numbers", "[chain]", "[tool_check]\nposition = [1.0, 2.0]\n\n[chain]",
+     "m.toml:18:12: error: tool_check.position has 2 numbers, must have 3\n"},
+    {"tool setter without clearance", "[chain]",
+     "[tool_check]\nposition = [1.0, 2.0, -390.0]\nclearance = 0\n\n[chain]",
+     "m.toml:19:13: error: tool_check.clearance = 0 is below 0.1 mm\n"},
+    {"check of a tool without lines", "[chain]", "[tool_check]\nposition = [1.0, 2.0, -390.0]\nlines = []\n\n[chain]",
+     "m.toml:19:9: error: tool_check.lines is empty, must have at least one line\n"},
     {"69 limits reversed", "min = -110.0\nmax = 30.0", "min = 30.0\nmax = -110.0",
      "m.toml:41:7: error: axes.A.max = -110 must exceed axes.A.min = 30\n"},
     {"69 limits equal", "max = 0.0", "max = -400.0",

@@ -137,6 +137,13 @@ class Walker {
     return said_ = true;
   }
 
+  /// Whoever measures a tool may leave all modes otherwise.
+  bool measured() {
+    walk_.checks.push_back({lines_[at_ - 1].number, tool_, walk_.moves.size()});
+    metric_ = motion_known_ = length_ = false;
+    return true;
+  }
+
   NcWalk walk_;
   NcMove next_;
   std::vector<TextLine> lines_;
@@ -175,7 +182,10 @@ class Walker {
 /// Words with a letter and a number: LinuxCNC, and Fanuc with its kin.
 class IsoWalker : public Walker {
  public:
-  explicit IsoWalker(bool linuxcnc) : linuxcnc_(linuxcnc) { freezes_ = !linuxcnc; }
+  explicit IsoWalker(bool linuxcnc) : linuxcnc_(linuxcnc) {
+    freezes_ = !linuxcnc;
+    if (linuxcnc) variables_["#5403"] = 0;  // where the tip is does not matter to whoever asks for words
+  }
 
  protected:
   std::string uncommented(const std::string& line) const override {
@@ -191,7 +201,10 @@ class IsoWalker : public Walker {
   bool execute(const std::string& code) override {
     const bool flow = std::string(linuxcnc_ ? "o#" : "%OM").find(code[0]) != std::string::npos;
     if (flow && (linuxcnc_ ? linuxcnc_flow(code) : fanuc_flow(code))) return true;
-    static const std::regex zero(R"((?:N\d+ )?G52 (.*))");
+    static const std::regex zero(R"((?:N\d+ )?G52 (.*))"), macro(R"(G65 P\d+( [A-Z][-0-9.]+)*)"),
+        probe(R"(G91 G38\.3 Z\[0-2\*[0-9.]+\] F[0-9.]+)");
+    if (matches(code, linuxcnc_ ? probe : macro)) return steps_ = linuxcnc_, measured();
+    if (steps_) return code == "G90" && (steps_ = false, true);  // nothing else is meant in G91
     if (!linuxcnc_ && matches(code, zero)) return zeros(found_[1]);
     for (std::size_t k = 0; k < code.size();) {
       if (code[k] == ' ') {
@@ -211,7 +224,10 @@ class IsoWalker : public Walker {
  private:
   bool linuxcnc_flow(const std::string& code) {
     static const std::regex sub(R"(o(\d+) sub)"), endsub(R"(o(\d+) endsub)"), call(R"(o(\d+) call(?: (\[.*\]))?)"),
-        loop(R"(o(\d+) while \[(.*) LT (.*)\])"), again(R"(o(\d+) endwhile)"), assign(R"((#\d+)=(.*))");
+        loop(R"(o(\d+) while \[(.*) LT (.*)\])"), again(R"(o(\d+) endwhile)"), assign(R"((#\d+)=(.*))"),
+        broken(R"(o(\d+) if \[\[#5070 EQ 0\] OR \[ABS\[#<_off>\] GT [0-9.]+\]\])"), off(R"(#<_off>=\[#5063.*\])");
+    if (matches(code, off)) return true;
+    if (matches(code, broken)) return at_ = line_behind("o" + found_[1].str() + " endif", at_), true;  // it is whole
     if (matches(code, sub)) {
       at_ = line_behind("o" + found_[1].str() + " endsub", at_);
     } else if (matches(code, call)) {
@@ -293,7 +309,7 @@ class IsoWalker : public Walker {
     return found != harmless.end() && found->second != (linuxcnc_ ? 2 : 1);
   }
   bool code_m(const std::string& m) {
-    static const std::vector<std::string> harmless = {"0", "1", "3", "5", "7", "8", "9"};
+    static const std::vector<std::string> harmless = {"0", "1", "3", "5", "7", "8", "9", "19"};
     if (m == "6") return tool_ = ready_, true;
     if (m == (linuxcnc_ ? "2" : "30")) return walk_.ended = true;
     if (linuxcnc_ && (m == "428" || m == "429")) return tip_ = m == "428", true;
@@ -302,7 +318,7 @@ class IsoWalker : public Walker {
     return false;
   }
 
-  bool linuxcnc_;
+  bool linuxcnc_, steps_ = false;
   std::vector<std::pair<std::size_t, Variables>> returns_;
 };
 
@@ -312,7 +328,8 @@ class SiemensWalker : public Walker {
   bool execute(const std::string& code) override {
     static const std::regex loop(R"((?:FOR) (R\d+)=(.*) TO (.*))"), assign(R"((R\d+)=(.*))"), tool("T=\"T(\\d+)\""),
         path(R"x(FGROUP\(.*\)|FGREF\[[ABC]\]=\S+|WORKPIECE\(,"",,"(?:PIPE|CYLINDER)"(?:,[-0-9.]+)+\))x"),
-        turn(R"(ROT Z=(.*))"), zero(R"(TRANS ([ABC])=(.*))");
+        turn(R"(ROT Z=(.*))"), zero(R"(TRANS ([ABC])=(.*))"), measures(R"(TOOL_CHECK\([-0-9.,]+\))");
+    if (matches(code, measures)) return measured();
     if (std::string("GXYZABC").find(code[0]) != std::string::npos) {
       return words(code);
     } else if (matches(code, loop)) {
@@ -394,6 +411,12 @@ class HeidenhainWalker : public Walker {
         harmless(
             R"(LBL \d+|PLANE RESET STAY|BLK FORM CYLINDER Z R[-+ .0-9LDISTR]+|END PGM \S+ MM|M(?:0|1|3|5|7|8|9|126|127))"
             R"(|CYCL DEF (?:7\.0 DATUM SHIFT|10\.0 ROTATION|247 DATUM SETTING Q339=\+1|32\.0 TOLERANCE|32\.1(?: T.*)?|32\.2 HSC-MODE:0 TA.*))");
+    // TCH PROBE 481 and what becomes of its Q115; the tool is whole.
+    static const std::regex measures(R"(TCH PROBE 481 TOOL LENGTH Q340=\+2 Q260=[-+0-9.]+ Q341=\+0)"),
+        off(R"(FN 1[12]: IF \+Q115 (?:GT|LT) [-+0-9.]+ GOTO LBL \d+)"), go(R"(FN 9: IF \+0 EQU \+0 GOTO LBL (\d+))");
+    if (matches(code, measures)) return measured() && (metric_ = motion_known_ = true);
+    if (matches(code, off)) return true;
+    if (matches(code, go)) return at_ = line_behind("LBL " + found_[1].str()), true;
     if (code[0] == 'L' && code[1] != 'B') {
       return straight(code);
     } else if (matches(code, begin)) {

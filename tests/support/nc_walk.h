@@ -28,8 +28,15 @@ struct NcMove {
   std::optional<std::array<double, 3>> direction;  ///< tool vector, tip to holder
 };
 
+/// The tool is measured at a setter, and the program stops where it is broken.
+struct NcToolCheck {
+  int line = 0, tool = 0;
+  std::size_t move = 0;  ///< so many motions stand ahead of it
+};
+
 struct NcWalk {
   std::vector<NcMove> moves;
+  std::vector<NcToolCheck> checks;  ///< of tools; behind each, units, kind of motion and length must be said again
   std::vector<std::string>
       faults;          ///< "line: text" of what was not understood or may not be; such a walk judges nothing
   bool ended = false;  ///< by the word that ends a program

@@ -111,6 +111,11 @@ Facts facts_of(const machines::Machine& m, const std::vector<BodyBox>& boxes) {
   row("distance kept from limits",
       fmt::format("{} mm, {} deg", number(m.limit_margin.linear_mm), number(degrees(m.limit_margin.rotary_rad))), "",
       "limits");
+  if (const auto& check = m.tool_check)
+    row("tool setter",
+        fmt::format("X {} Y {} Z {}", number(check->position_mm.x()), number(check->position_mm.y()),
+                    number(check->position_mm.z())),
+        "mm", "tool_check.position");
   row("tool length to", m.post.length_reference == machines::LengthReference::tip ? "tip" : "centre of the ball", "",
       "post.length_reference");
 

@@ -28,6 +28,23 @@ text::NcPlanes planes() {
   return p;
 }
 
+void checks_of_tools(text::NcDialect& d) {
+  // Q340 = 2 compares and changes no table; Q115 is what the length is off by. Whoever goes on behind the stop is
+  // stopped again.
+  d.check_lines = {"TCH PROBE 481 TOOL LENGTH Q340=+2 Q260={work_top} Q341=+0",
+                   "FN 11: IF +Q115 GT +{tolerance} GOTO LBL {label}",
+                   "FN 12: IF +Q115 LT -{tolerance} GOTO LBL {label}",
+                   "FN 9: IF +0 EQU +0 GOTO LBL {label+1}",
+                   "LBL {label}",
+                   "STOP",
+                   "FN 9: IF +0 EQU +0 GOTO LBL {label}",
+                   "LBL {label+1}"};
+  d.check_trust =
+      "cycle 481 with Q340 = 2 compares the length with TOOL.T and changes nothing, Q115 is what it is off by; LBREAK "
+      "of the tool is above the tolerance, and an LTOL that is exceeded locks the tool";
+  d.tool_recall = {"TOOL CALL {tool} Z S{speed}"};
+}
+
 text::NcDialect words() {
   text::NcDialect d;
   d.name = "heidenhain";
@@ -56,6 +73,7 @@ text::NcDialect words() {
   d.tool_keep = {"TOOL CALL S{speed}"};
   d.tool_next = {"TOOL DEF {next}"};
   d.tool_change = {"{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M3"};
+  checks_of_tools(d);
   d.coolant = {{machines::Coolant::flood, {"M8", "M9"}}};  // M7 is none of its own
   d.own_m = {{0, 6}, {13, 14}, {19, 19}, {30, 30}, {89, 299}};
   d.end = {"CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1", "M127"};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <unordered_map>
 
 #include "geometry/base/angle.h"
@@ -12,12 +13,16 @@
 #include "postproc/readback/execution.h"
 #include "postproc/readback/scanner.h"
 #include "postproc/readback/turns.h"
+#include "postproc/tool_check/lines.h"
+#include "postproc/tool_check/unsaid.h"
 
 namespace toothpath::controls {
 namespace {
 
 constexpr std::size_t kLongestHeidenhainLine = 256;
 constexpr std::size_t kMostM = 4;  // in a block
+/// Modes that a check of the tool leaves unsaid.
+enum : unsigned { kRotation, kDatum, kTolerance, kTcpm, kPlane, kShift };
 
 class Heidenhain {
  public:
@@ -86,6 +91,8 @@ class Heidenhain {
       const std::string_view comment = s.rest().substr(1);
       if (const int op = readback::comment_label(comment, "OP "); op >= 0) execution_.begin_operation(op);
       if (const int tooth = readback::comment_label(comment, "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
+      const int checked = execution_.check_lines() > 0 ? tool_check::checked_tool(text) : -1;
+      if (checked >= 0) return check_tool(checked);
       return std::nullopt;
     }
     if (started_ == s.take("BEGIN PGM "))
@@ -119,6 +126,26 @@ class Heidenhain {
     return bad;
   }
 
+  /// What the lines of a check leave is not known: all modes must be said again ahead of a straight line.
+  Problem check_tool(int tool) {
+    const std::size_t count = std::min(execution_.check_lines(), lines_.size() - pc_);
+    std::vector<std::string_view> lines;
+    for (std::size_t i = 0; i < count; ++i) lines.push_back(tool_check::without_number(lines_[pc_ + i]));
+    if (const auto bad = execution_.check_tool(tool, lines, static_cast<std::int32_t>(line_) + 1))
+      return place(line_ + 1 + bad->line, bad->column, bad->text);
+    pc_ += count;
+    execution_.set_unit();  // BEGIN PGM .. MM, and words of its own for steps and feeds
+    execution_.set_absolute();
+    execution_.set_feed_mode(readback::NcExecution::Feed::per_minute);
+    nearer_way_ = false;
+    unsaid_.all({{kRotation, "CYCL DEF 10.1 ROT"},
+                 {kDatum, "CYCL DEF 247 DATUM SETTING"},
+                 {kTolerance, "CYCL DEF 32.1"},
+                 {kTcpm, "FUNCTION RESET TCPM"},
+                 {kPlane, "PLANE RESET"},
+                 {kShift, "TRANS DATUM RESET"}});
+    return std::nullopt;
+  }
   Problem statement(readback::NcScanner& s, int column) {
     if (s.take("LBL ")) return (void)s.number(), std::nullopt;
     if (s.take("CALL LBL ")) return repeat(s);
@@ -130,15 +157,16 @@ class Heidenhain {
     }
     if (s.take("TOOL CALL ")) return tool_call(s, column);
     if (s.take("CYCL DEF ")) return cycle(s, column);
-    if (s.take("PLANE RESET STAY")) return execution_.reset_plane(), std::nullopt;
+    if (s.take("PLANE RESET STAY")) return unsaid_.said(kPlane), execution_.reset_plane(), std::nullopt;
     if (s.take("PLANE SPATIAL ")) return plane(s, column);
     if (s.take("TRANS DATUM RESET")) {
+      unsaid_.said(kShift);
       shift_ = Vec3::Zero();
       return placed(column, execution_.clear_zeros());
     }
     if (s.take("TRANS DATUM AXIS ")) return plane_origin(s, column);
     if (s.take("BLK FORM CYLINDER Z ")) return blank(s);
-    if (s.take("FUNCTION RESET TCPM")) return placed(column, execution_.tcp_off());
+    if (s.take("FUNCTION RESET TCPM")) return unsaid_.said(kTcpm), placed(column, execution_.tcp_off());
     if (s.take("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS")) return placed(column, execution_.tcp_on());
     if (s.take("FUNCTION DWELL TIME")) return dwell(s, false);
     if (s.take("FUNCTION DWELL REV")) return dwell(s, true);
@@ -329,6 +357,7 @@ class Heidenhain {
       const auto v = word_value(s);
       if (!v) return v.error();
       execution_.turn_frame(*v);
+      unsaid_.said(kRotation);
       return std::nullopt;
     }
     if (s.take("32.1")) {
@@ -339,6 +368,7 @@ class Heidenhain {
         if (!v || !(*v >= 0)) return here(s.column(), "T must not be negative");
         blend = *v;
       }
+      unsaid_.said(kTolerance);
       execution_.set_blend(blend);
       execution_.set_path_mode(blend > 0 ? timing::Corners::round : timing::Corners::jump, blend);
       execution_.set_blend_axis({});  // the block that follows may say it
@@ -354,6 +384,7 @@ class Heidenhain {
     if (s.take("247 DATUM SETTING Q339=")) {
       const auto n = word_value(s);
       if (!n) return n.error();
+      unsaid_.said(kDatum);
       for (const auto& offset : control_.work_offsets)
         if (preset_number(offset.first) == *n) return placed(column, execution_.select_offset(offset.first));
       return here(column, fmt::format("datum {} is not defined", *n));
@@ -489,6 +520,7 @@ class Heidenhain {
     if (!m.machine_frame && !execution_.in_plane() && !shift_.isZero(0) && (m.has[0] || m.has[1] || m.has[2]))
       return here(first, "words behind TRANS DATUM AXIS are read in a tilted plane alone");
     if (m91 && m92) return here(first, "M91 and M92 in a block");
+    if (!unsaid_.none()) return here(first, unsaid_.text("a straight line"));
     if (m92)
       if (auto bad = from_builders_zero(m, first)) return bad;
     return move_with(m, vector, functions, first);
@@ -533,6 +565,7 @@ class Heidenhain {
   std::size_t pc_ = 0, line_ = 0;
   Vec3 shift_ = Vec3::Zero();  // TRANS DATUM AXIS
   bool nearer_way_ = false;    // M126
+  tool_check::Unsaid unsaid_;
   bool started_ = false, ready_to_end_ = false, ended_ = false;
 };
 

@@ -26,6 +26,18 @@ text::NcDialect words() {
   d.tool_next = {"T{next}"};
   d.tool_change = {"{safe_start}", "{offset}", "S{speed} M3"};
   d.compensation = d.tcp_compensation = {"G43 H{tool}"};
+  // The length in the table (#5403) is the one that G43 takes; #5063 is where the switch was met, seen from the work.
+  d.check_lines = {"G49",
+                   "G53 G0 X{x} Y{y}",
+                   "G53 G0 Z[{z}+#5403+{clearance}]",
+                   "G91 G38.3 Z[0-2*{clearance}] F{feed}",
+                   "G90",
+                   "#<_off>=[#5063+#<_abs_z>-#<_z>-{z}-#5403]",
+                   "o{label} if [[#5070 EQ 0] OR [ABS[#<_off>] GT {tolerance}]]",
+                   "G53 G0 Z{top}",
+                   "(ABORT, TOOL {tool}: LENGTH OFF BY MORE THAN {tolerance} MM, OR NOT MET)",
+                   "o{label} endif"};
+  d.check_trust = "the tool setter is the probe input; #5403 is the length of the tool in the spindle";
   d.operation_end = {"G94 F{free}"};
   d.end = {"G61", "G49"};
   d.frame_end = {"M2"};

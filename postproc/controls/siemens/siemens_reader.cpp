@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <unordered_map>
 
 #include "geometry/base/angle.h"
@@ -11,13 +12,16 @@
 #include "postproc/readback/execution.h"
 #include "postproc/readback/scanner.h"
 #include "postproc/readback/turns.h"
+#include "postproc/tool_check/lines.h"
+#include "postproc/tool_check/unsaid.h"
 
 namespace toothpath::controls {
 namespace {
 
 constexpr std::size_t kDeepestLoop = 8;
 constexpr std::size_t kLongestSiemensLine = 512;
-constexpr std::size_t kMostM = 5;  // in a block
+constexpr std::size_t kMostM = 5;                                         // in a block
+constexpr unsigned kFrames = 32, kTransformation = 33, kCompressor = 34;  // beside the modal groups
 
 class Siemens {
  public:
@@ -155,6 +159,34 @@ class Siemens {
     return placed(1, turns_.back_to(l.head));
   }
 
+  /// What the lines of a check leave is not known: all groups must be said again ahead of an axis word.
+  Problem check_tool(int tool) {
+    const std::size_t count = std::min(execution_.check_lines(), lines_.size() - pc_);
+    if (const auto bad =
+            execution_.check_tool(tool, std::span(lines_).subspan(pc_, count), static_cast<std::int32_t>(line_) + 1))
+      return place(line_ + 1 + bad->line, bad->column, bad->text);
+    pc_ += count;
+    motion_ = -1;
+    corners_said_ = false;
+    unsaid_.all({{6, "G17"},
+                 {7, "G40"},
+                 {13, "G710"},
+                 {14, "G90"},
+                 {15, "G93 or G94"},
+                 {kFrames, "ROT or TRANS"},
+                 {kTransformation, "TRAFOOF"},
+                 {kCompressor, "COMPOF"}});
+    return std::nullopt;
+  }
+  Problem all_said(const Request& r) {
+    unsaid_.said_groups(r.groups);
+    if (r.rot && !r.trans && r.rot_deg == 0) unsaid_.said(kFrames);
+    if (r.trafoof) unsaid_.said(kTransformation);
+    const bool moves = std::any_of(r.move.has.begin(), r.move.has.end(), [](bool h) { return h; });
+    if (unsaid_.none() || !(moves || r.vector_words != 0 || r.g75)) return std::nullopt;
+    return here(r.column, unsaid_.text("an axis word"));
+  }
+
   // Lines.
   Problem execute(std::string_view text) {
     if (text.size() > kLongestSiemensLine)
@@ -165,6 +197,8 @@ class Siemens {
       const std::string_view comment = text.substr(semicolon + 1);
       if (const int op = readback::comment_label(comment, "OP "); op >= 0) execution_.begin_operation(op);
       if (const int tooth = readback::comment_label(comment, "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
+      const int checked = execution_.check_lines() > 0 ? tool_check::checked_tool(text) : -1;
+      if (checked >= 0) return check_tool(checked);
       text = text.substr(0, semicolon);
     }
     readback::NcScanner s(text);
@@ -194,6 +228,7 @@ class Siemens {
     if (r.whole)
       return words == 1 ? std::nullopt : Problem(here(1, "CYCLE800 or WORKPIECE with other words in a block"));
     if (r.dwell) return dwell(r, words);
+    if (auto bad = all_said(r)) return bad;
     if (r.g75) return fixed_point(r, words);
     return apply(r);
   }
@@ -367,7 +402,8 @@ class Siemens {
     if (name == "TRAORI") r.traori = true;
     else if (name == "TRAFOOF") r.trafoof = true;
     else if (name == "SUPA") r.supa = true;
-    else if (name == "ORIWKS" || name == "ORIAXES" || name == "COMPOF") return std::nullopt;
+    else if (name == "COMPOF") return unsaid_.said(kCompressor), std::nullopt;
+    else if (name == "ORIWKS" || name == "ORIAXES") return std::nullopt;
     else if (name == "FGROUP" || name == "FGREF") return path_group(s, name == "FGREF");
     else if (name == "FP") {
       if (!s.take("=")) return here(s.column(), "= expected");
@@ -636,6 +672,7 @@ class Siemens {
   std::size_t pc_ = 0, line_ = 0;
   NcPathGroup path_;
   int motion_ = -1, tool_ = -1;
+  tool_check::Unsaid unsaid_;
   bool ended_ = false;
   bool corners_said_ = true;  // since CYCLE832() was left
 };
