@@ -75,9 +75,13 @@ class AptReader {
       if (s.take(word)) return execution_.switch_coolant(word), std::nullopt;
     if (s.take("END")) {
       if (auto bad = placed(execution_.tcp_off())) return bad;
+      stopped_ = true;
       return placed(execution_.end_program(false));
     }
-    if (s.take("FINI")) return ended_ = true, std::nullopt;
+    if (s.take("FINI")) {
+      if (!stopped_) return here(column, "FINI without END: the machine's program would not end");
+      return ended_ = true, std::nullopt;
+    }
     return here(column, "the statement is not in the subset");
   }
 
@@ -161,7 +165,7 @@ class AptReader {
   std::vector<std::string_view> lines_;
   readback::NcExecution execution_;
   std::size_t line_ = 0;
-  bool rapid_ = false, ended_ = false;
+  bool rapid_ = false, stopped_ = false, ended_ = false;  // END, FINI
 };
 
 }  // namespace
