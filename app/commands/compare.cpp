@@ -10,6 +10,7 @@
 #include "app/process/face/shaped_flanks.h"
 #include "app/process/flow/cut_flanks.h"
 #include "app/process/opening_and_end.h"
+#include "app/process/under_load/settings.h"
 #include "app/report/page/study_page.h"
 #include "app/report/run_report.h"
 #include "app/report/svg/contact_pattern.h"
@@ -203,7 +204,7 @@ struct ComparedContact {
 };
 process::ValueOrErrors<ComparedContact> compared_contact(const Side& milled_side, const process::CutFlanks& shaped,
                                                          const process::CutFlanks& milled, app::StageClock& clock) {
-  const job::ContactSettings settings = face::contact_settings(milled_side.job, {});
+  const job::ContactSettings settings = under_load::contact_settings(milled_side.job, {});
   ComparedContact out;
   for (const process::CutFlanks* cut : {&shaped, &milled}) {
     auto analysed =

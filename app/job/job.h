@@ -75,7 +75,8 @@ inline constexpr toml::Range kContourTolerance{1e-4, 0.1, " mm"};
 /// Numbers of tools.
 inline constexpr toml::Range kToolNumber{1, 9999};
 
-/// How the pinion is held along its axis; `automatic`: it floats between two rings of opposite hand, else it is held.
+/// How the pinion is held along its axis; `automatic`: it floats between two rings of opposite hand of a face gear,
+/// else it is held.
 enum class PinionHold { automatic, floating, held, spring };
 /// The [contact.load] table: what the pair carries and of what it is. docs/loaded_contact.md.
 struct ContactLoad {
@@ -89,6 +90,7 @@ struct ContactLoad {
   int row_teeth = 5;                 ///< of the clamped row that stands for the body, odd
   std::optional<double> segment_mm;  ///< none: 0.3 m
   std::optional<double> rim_mm;      ///< none: 5 m
+  double edge_radius_mm = 0;         ///< rounding of the edges of the teeth; 0: not stated
 };
 /// What the torque of [contact.load] and of `contact --torque`, and the positions may be.
 inline constexpr toml::Range kContactTorque{1e-6, 1e9, " N m"}, kContactPositions{1, 200};

@@ -349,6 +349,7 @@ ContactLoad read_contact_load(toml::TableReader& table) {
     table.refuse("row_teeth", "row_teeth = {} is even: the loaded tooth stands in the middle", load.row_teeth);
   load.segment_mm = table.optional_number("segment", {0.01, 100, " mm"});
   load.rim_mm = table.optional_number("rim", {0.01, 1000, " mm"});
+  load.edge_radius_mm = table.optional_number("edge_radius", {1e-3, 10, " mm"}).value_or(load.edge_radius_mm);
   table.finish();
   return load;
 }
@@ -374,8 +375,8 @@ ContactSettings read_contact(toml::TableReader& table, const Job& job) {
   c.moved.axial_mm = table.number_or("axial_error", kMoved, c.moved.axial_mm);
   c.moved.angle_rad = radians(table.number_or("angle_error", kAngleError, degrees(c.moved.angle_rad)));
   c.compound_mm = table.number_or("compound", kCompound, c.compound_mm);
+  c.moved.gear_axial_mm = table.number_or("gear_axial_error", kMoved, c.moved.gear_axial_mm);
   if (job.face_gear()) {
-    c.moved.gear_axial_mm = table.number_or("gear_axial_error", kMoved, c.moved.gear_axial_mm);
     c.modifications = read_modifications(table, job.directory());
     if (auto box = table.table("misalignment")) c.box = read_misalignment(*box);
   } else {
@@ -384,9 +385,9 @@ ContactSettings read_contact(toml::TableReader& table, const Job& job) {
                    "modification belongs to the pinions of face gears; this gear is {}, whose mate has a job of its "
                    "own: [[gear.modification]] there, and --mate",
                    job.gear_type());
-    for (const char* key : {"gear_axial_error", "misalignment"})
-      if (table.misplaced(key))
-        table.refuse(key, "{} belongs to face gears and their pinions; this gear is {}", key, job.gear_type());
+    if (table.misplaced("misalignment"))
+      table.refuse("misalignment", "misalignment belongs to face gears and their pinions; this gear is {}",
+                   job.gear_type());
   }
   if (auto load = table.table("load")) c.load = read_contact_load(*load);
   table.finish();

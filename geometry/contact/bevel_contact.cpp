@@ -65,9 +65,7 @@ class Roll {
   }
 
   std::optional<double> error(int half, const Vec3& point, double phi_2, bevel_gear::BevelInverse& start) const {
-    const auto turn = pair_.turn_at(half, sigma_, point, phi_2, start);
-    if (!turn) return std::nullopt;
-    return sigma_ * wrapped(*turn - pair_.nominal_turn(phi_2));
+    return pair_.error_at(half, sigma_, point, phi_2, start);
   }
 
   /// When and how far from the pinion every place is: about the turn at which it passes the pitch plane.
@@ -141,28 +139,10 @@ class Roll {
 
   Least downhill(Least at, double phi_2) const {
     const auto& h = pair_.wheel().halves()[static_cast<std::size_t>(at.half)];
-    const double low = pair_.lowest(at.half), high = pair_.highest();
-    double along = (h.ell_to - h.ell_from) / (options_.columns - 1), up = (high - low) / (options_.rows - 1);
-    bevel_gear::BevelInverse start;
-    for (int n = 0; n < 14; ++n, along *= 0.5, up *= 0.5)
-      for (bool moved = true; moved;) {
-        moved = false;
-        const Least centre = at;
-        for (int i = -1; i <= 1; ++i)
-          for (int j = -1; j <= 1; ++j) {
-            if (i == 0 && j == 0) continue;
-            const double ell = std::clamp(centre.ell + j * along, h.ell_from, h.ell_to),
-                         height = std::clamp(centre.height + i * up, low, high);
-            const auto place = pair_.wheel_place(at.half, sigma_, ell, height);
-            if (!place) continue;
-            const auto e = error(at.half, place->point, phi_2, start);
-            if (e && *e < at.error - 1e-14) {
-              at.error = *e, at.ell = ell, at.height = height;
-              moved = true;
-            }
-          }
-      }
-    return at;
+    const BevelNear found = pair_.downhill(at.half, sigma_, phi_2, {at.error, at.ell, at.height},
+                                           (h.ell_to - h.ell_from) / (options_.columns - 1),
+                                           (pair_.highest() - pair_.lowest(at.half)) / (options_.rows - 1));
+    return {found.error, at.half, found.ell, found.height};
   }
 
   [[nodiscard]] const Least* pair_at(int k) const {

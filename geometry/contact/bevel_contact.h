@@ -41,6 +41,19 @@ struct BevelPlace {
   Vec3 point = Vec3::Zero(), normal = Vec3::Zero();  ///< blank frame, space 0; out of the material
 };
 
+/// Where the pinion's wall, continued beyond its edges, passes through a point.
+struct BevelTouch {
+  double turn = 0;             ///< of the pinion, rad
+  double ell = 0, height = 0;  ///< generatrix coordinates on the pinion, mm
+  bool on_flank = false;       ///< within its face, below its tip, above its root
+};
+
+/// A place on the wheel's flank and how early the pinion meets it.
+struct BevelNear {
+  double error = 0;            ///< sigma (phi_1 - nominal), rad
+  double ell = 0, height = 0;  ///< on the wheel, mm
+};
+
 /// Two gears in mesh. Keeps references: both gears outlive it.
 class BevelPair {
  public:
@@ -56,11 +69,30 @@ class BevelPair {
   [[nodiscard]] std::optional<double> turn_at(int half, int sigma, const Vec3& point, double phi_2,
                                               bevel_gear::BevelInverse& start) const;
 
+  /// The same with the place on the pinion, and beyond the edges of its flank as far as its wall can be continued.
+  [[nodiscard]] std::optional<BevelTouch> touch(int half, int sigma, const Vec3& point, double phi_2,
+                                                bevel_gear::BevelInverse& start) const;
+
+  /// sigma times the turn of the pinion beyond the exact ratio at which it meets a point of the wheel. Empty: as
+  /// turn_at.
+  [[nodiscard]] std::optional<double> error_at(int half, int sigma, const Vec3& point, double phi_2,
+                                               bevel_gear::BevelInverse& start) const;
+  /// From a place of the wheel's flank to the nearest one that the pinion meets earlier than all about it.
+  /// @param along, up  first steps of the search, mm, along the face and up the profile; it ends with their 8000th part
+  [[nodiscard]] BevelNear downhill(int half, int sigma, double phi_2, BevelNear at, double along, double up) const;
+
   /// Place on the wheel's wall; empty outside of it.
   [[nodiscard]] std::optional<BevelPlace> wheel_place(int half, int sigma, double ell, double height) const;
 
   /// Moment of the unit normal about the pinion axis, mm: turns of the pinion times this are gaps.
   [[nodiscard]] double lever(const BevelPlace& place, double phi_2) const;
+
+  /// A point, and a direction, of the wheel's blank frame in the fixed frame while the wheel stands at phi_2: the
+  /// pinion's blank frame at phi_1 = 0, z along its axis, away from its apex.
+  [[nodiscard]] Vec3 to_pinion(const Vec3& point, double phi_2) const;
+  [[nodiscard]] Vec3 turned_to_pinion(const Vec3& direction, double phi_2) const;
+  [[nodiscard]] Vec3 wheel_axis() const { return placed_.col(2); }  ///< fixed frame, away from the wheel's apex
+  [[nodiscard]] const Vec3& wheel_apex() const { return shift_; }   ///< fixed frame
 
   /// phi_1 at the exact ratio.
   [[nodiscard]] double nominal_turn(double phi_2) const { return -phi_2 * ratio_; }
@@ -74,8 +106,10 @@ class BevelPair {
 
  private:
   BevelPair() = default;
-  [[nodiscard]] Vec3 to_pinion(const Vec3& point, double phi_2) const;
-  [[nodiscard]] Vec3 turned_to_pinion(const Vec3& direction, double phi_2) const;
+  [[nodiscard]] std::optional<BevelTouch> touch_of(const bevel_gear::BevelHalf& half, int sigma,
+                                                   const bevel_gear::ConePoint& q, bool on_flank,
+                                                   bevel_gear::BevelInverse& start) const;
+  [[nodiscard]] bool within_edges(const bevel_gear::BevelHalf& half, const bevel_gear::ConePoint& q) const;
   const bevel_gear::BevelGear *pinion_ = nullptr, *wheel_ = nullptr;
   std::vector<bevel_gear::BevelHalf> pinion_halves_;  ///< with the change
   double ratio_ = 1;

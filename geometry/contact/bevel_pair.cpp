@@ -1,5 +1,6 @@
 #include "geometry/contact/bevel_contact.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/base/angle.h"
@@ -69,15 +70,16 @@ Vec3 BevelPair::turned_to_pinion(const Vec3& direction, double phi_2) const {
 }
 Vec3 BevelPair::to_pinion(const Vec3& point, double phi_2) const { return turned_to_pinion(point, phi_2) + shift_; }
 
-std::optional<double> BevelPair::turn_at(int half, int sigma, const Vec3& point, double phi_2,
-                                         bevel_gear::BevelInverse& start) const {
-  const bevel_gear::BevelHalf& own = pinion_halves_[static_cast<std::size_t>(half)];
-  const bevel_gear::ConePoint q =
-      bevel_gear::cone_point(to_pinion(point, phi_2), pinion_->sin_delta(), pinion_->cos_delta());
+bool BevelPair::within_edges(const bevel_gear::BevelHalf& half, const bevel_gear::ConePoint& q) const {
   const double edge = kAtEdge * pinion_->R_0();
-  if (q.ell < own.ell_from - edge || q.ell > own.ell_to + edge || q.height > pinion_->parameters().addendum_mm + edge)
-    return std::nullopt;
-  const bevel_gear::BevelWall<double>& wall = own.wall(sigma);
+  return !(q.ell < half.ell_from - edge || q.ell > half.ell_to + edge ||
+           q.height > pinion_->parameters().addendum_mm + edge);
+}
+
+std::optional<BevelTouch> BevelPair::touch_of(const bevel_gear::BevelHalf& half, int sigma,
+                                              const bevel_gear::ConePoint& q, bool on_flank,
+                                              bevel_gear::BevelInverse& start) const {
+  const bevel_gear::BevelWall<double>& wall = half.wall(sigma);
   auto found = start.iterations > 0 ? bevel_gear::bevel_inverse(wall, q.ell, q.height, start)
                                     : bevel_gear::bevel_inverse(wall, q.ell, q.height);
   if (!found && start.iterations > 0) found = bevel_gear::bevel_inverse(wall, q.ell, q.height);
@@ -85,7 +87,58 @@ std::optional<double> BevelPair::turn_at(int half, int sigma, const Vec3& point,
   start = *found;
   // Pinion tooth between its spaces -1 and 0, turned by half a pitch to azimuth 0: wall L of space 0, wall U of space
   // -1.
-  return wrapped(q.azimuth - found->azimuth - sigma * pinion_->pitch() / 2);
+  return BevelTouch{wrapped(q.azimuth - found->azimuth - sigma * pinion_->pitch() / 2), q.ell, q.height, on_flank};
+}
+
+std::optional<double> BevelPair::turn_at(int half, int sigma, const Vec3& point, double phi_2,
+                                         bevel_gear::BevelInverse& start) const {
+  const bevel_gear::BevelHalf& own = pinion_halves_[static_cast<std::size_t>(half)];
+  const bevel_gear::ConePoint q =
+      bevel_gear::cone_point(to_pinion(point, phi_2), pinion_->sin_delta(), pinion_->cos_delta());
+  if (!within_edges(own, q)) return std::nullopt;
+  const auto found = touch_of(own, sigma, q, true, start);
+  if (!found) return std::nullopt;
+  return found->turn;
+}
+
+std::optional<BevelTouch> BevelPair::touch(int half, int sigma, const Vec3& point, double phi_2,
+                                           bevel_gear::BevelInverse& start) const {
+  const bevel_gear::BevelHalf& own = pinion_halves_[static_cast<std::size_t>(half)];
+  const bevel_gear::ConePoint q =
+      bevel_gear::cone_point(to_pinion(point, phi_2), pinion_->sin_delta(), pinion_->cos_delta());
+  return touch_of(own, sigma, q, within_edges(own, q), start);
+}
+
+std::optional<double> BevelPair::error_at(int half, int sigma, const Vec3& point, double phi_2,
+                                          bevel_gear::BevelInverse& start) const {
+  const auto turn = turn_at(half, sigma, point, phi_2, start);
+  if (!turn) return std::nullopt;
+  return sigma * wrapped(*turn - nominal_turn(phi_2));
+}
+
+BevelNear BevelPair::downhill(int half, int sigma, double phi_2, BevelNear at, double along, double up) const {
+  const auto& h = wheel_->halves()[static_cast<std::size_t>(half)];
+  const double low = lowest(half), high = highest();
+  bevel_gear::BevelInverse start;
+  for (int n = 0; n < 14; ++n, along *= 0.5, up *= 0.5)
+    for (bool moved = true; moved;) {
+      moved = false;
+      const BevelNear centre = at;
+      for (int i = -1; i <= 1; ++i)
+        for (int j = -1; j <= 1; ++j) {
+          if (i == 0 && j == 0) continue;
+          const double ell = std::clamp(centre.ell + j * along, h.ell_from, h.ell_to),
+                       height = std::clamp(centre.height + i * up, low, high);
+          const auto place = wheel_place(half, sigma, ell, height);
+          if (!place) continue;
+          const auto e = error_at(half, sigma, place->point, phi_2, start);
+          if (e && *e < at.error - 1e-14) {
+            at = {*e, ell, height};
+            moved = true;
+          }
+        }
+    }
+  return at;
 }
 
 std::optional<BevelPlace> BevelPair::wheel_place(int half, int sigma, double ell, double height) const {

@@ -1,8 +1,10 @@
-// Who carries in one position: forces of rings and teeth, and what they push along the pinion's axis.
+// Who carries in one position: forces of rings and teeth.
 #pragma once
 
 #include <algorithm>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "geometry/loaded/loaded_pair.h"
 
@@ -10,16 +12,15 @@ namespace toothpath::loaded {
 
 class Carriers {
  public:
-  Carriers(const LoadedPair& pair, LoadedPosition& out) : pair_(pair), out_(out) {
-    out_.ring_force.assign(pair.rings.size(), 0.0);
+  /// @param rings  numbers of the rings that can carry
+  Carriers(std::vector<int> rings, LoadedPosition& out) : rings_(std::move(rings)), out_(out) {
+    out_.ring_force.assign(rings_.size(), 0.0);
     out_.pressure_radius_mm = 1e300;
   }
-  /// A place, or all of one tooth, with a force above 0. @param axial_share by how much it nears when the pinion moves
-  /// by 1 along its axis
-  void add(int ring, int tooth, double force, double axial_share, double curvature) {
-    for (std::size_t r = 0; r < pair_.rings.size(); ++r)
-      if (pair_.rings[r].ring == ring) out_.ring_force[r] += force;
-    out_.axial_n -= force * axial_share;
+  /// A place, or all of one tooth, with a force above 0.
+  void add(int ring, int tooth, double force, double curvature) {
+    for (std::size_t r = 0; r < rings_.size(); ++r)
+      if (rings_[r] == ring) out_.ring_force[r] += force;
     out_.pressure_radius_mm = std::min(out_.pressure_radius_mm, 1 / curvature);
     teeth_[tooth] += force;
   }
@@ -30,7 +31,7 @@ class Carriers {
   }
 
  private:
-  const LoadedPair& pair_;
+  std::vector<int> rings_;
   LoadedPosition& out_;
   std::map<int, double> teeth_;
 };

@@ -57,35 +57,49 @@ Result<std::string> contact_deck(const face_gear::FaceGear& gear, int ring, int 
   if (!on_gear) return on_gear.error();
   const auto on_pinion = pinion_bricks(pinion, profile, side, bounds->least_Z, bounds->most_Z, o.bricks);
   if (!on_pinion) return on_pinion.error();
-  elastic::SectorRow gear_row = elastic::sector_row(on_gear->sector, o.teeth),
-                     pinion_row = elastic::sector_row(on_pinion->sector, o.teeth);
-  const int middle = o.teeth / 2;
   const auto about_z = [](double angle) { return Mat3(Eigen::AngleAxisd(angle, Vec3::UnitZ())); };
-  move(gear_row, about_z(f.i * o.phi - middle * f.pitch), Vec3::Zero());
   Mat3 frame;
   frame << pinion.d, pinion.b, pinion.a;
-  const double pinion_pitch = 2 * kPi / pinion.teeth;
-  move(pinion_row, frame * about_z(o.phi + side * pinion_pitch / 2 - middle * pinion_pitch), pinion.foot);
+  DeckRows rows;
+  rows.head = fmt::format(
+      "face gear and pinion, ring {}, flank {:+}, pinion at {:.6f} deg, approach {:g} mm\n"
+      "** normal force = moment of the reactions of GEAR_HELD about z / {:.9f} mm",
+      ring, side, degrees(o.phi), o.approach_mm, f.M2);
+  rows.gear = &on_gear->sector, rows.pinion = &on_pinion->sector;
+  rows.gear_turn = about_z(f.i * o.phi);
+  rows.pinion_turn = frame * about_z(o.phi + side * kPi / pinion.teeth);
+  rows.pinion_at = pinion.foot;
+  rows.turn = side * o.approach_mm / f.M2;
+  rows.teeth = o.teeth, rows.E = o.E, rows.nu = o.nu;
+  return rows_deck(rows);
+}
 
-  std::string out =
-      fmt::format("** face gear and pinion, ring {}, flank {:+}, pinion at {:.6f} deg, approach {:g} mm\n", ring, side,
-                  degrees(o.phi), o.approach_mm);
-  out += fmt::format("** normal force = moment of the reactions of GEAR_HELD about z / {:.9f} mm\n", f.M2);
-  const int nodes = static_cast<int>(gear_row.nodes.size()), bricks = static_cast<int>(gear_row.bricks.size());
-  add_body(out, gear_row, "GEAR", 0, 0);
-  add_body(out, pinion_row, "PINION", nodes, bricks);
-  add_flanks(out, on_gear->sector, "GEAR", o.teeth, 0);
-  add_flanks(out, on_pinion->sector, "PINION", o.teeth, bricks);
+std::string rows_deck(const DeckRows& o) {
+  elastic::SectorRow gear = elastic::sector_row(*o.gear, o.teeth), pinion = elastic::sector_row(*o.pinion, o.teeth);
+  const int middle = o.teeth / 2;
+  const auto back = [&](const elastic::Sector& s) {  // from the first tooth of a row to its middle one
+    Mat3 turn = Mat3::Identity();
+    for (int t = 0; t < middle; ++t) turn = s.pitch.transpose() * turn;
+    return turn;
+  };
+  move(gear, o.gear_turn * back(*o.gear), o.gear_at);
+  move(pinion, o.pinion_turn * back(*o.pinion), o.pinion_at);
+  std::string out = "** " + o.head + "\n";
+  const int nodes = static_cast<int>(gear.nodes.size()), bricks = static_cast<int>(gear.bricks.size());
+  add_body(out, gear, "GEAR", 0, 0);
+  add_body(out, pinion, "PINION", nodes, bricks);
+  add_flanks(out, *o.gear, "GEAR", o.teeth, 0);
+  add_flanks(out, *o.pinion, "PINION", o.teeth, bricks);
   out += fmt::format("*MATERIAL, NAME=BODY\n*ELASTIC\n{:g}, {:g}\n", o.E, o.nu);
   out += "*SOLID SECTION, ELSET=GEAR, MATERIAL=BODY\n*SOLID SECTION, ELSET=PINION, MATERIAL=BODY\n";
   out += "*SURFACE INTERACTION, NAME=FLANKS\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n2.E7\n";
   for (int t = 0; t < o.teeth; ++t)
-    out += fmt::format("*CONTACT PAIR, INTERACTION=FLANKS, TYPE=SURFACE TO SURFACE\nGEAR_{0}, PINION_{0}\n", t);
+    out += fmt::format("*CONTACT PAIR, INTERACTION=FLANKS, TYPE=SURFACE TO SURFACE\nGEAR_{}, PINION_{}\n", t,
+                       o.pinion_next > 0 ? t : o.teeth - 1 - t);
   out += "*BOUNDARY\nPINION_HELD, 1, 3\n*STEP, INC=50\n*STATIC\n1., 1.\n*BOUNDARY\n";
-  const double turn = side * o.approach_mm / f.M2;
-  for (const int n : gear_row.held) {
-    const Vec3& p = gear_row.nodes[static_cast<std::size_t>(n)];
-    out += fmt::format("{0}, 1, 1, {1:.12g}\n{0}, 2, 2, {2:.12g}\n{0}, 3, 3, 0.\n", n + 1, -turn * p.y(), turn * p.x());
+  for (const int n : gear.held) {
+    const Vec3 u = o.turn * o.axis.cross(Vec3(gear.nodes[static_cast<std::size_t>(n)] - o.gear_at));
+    out += fmt::format("{0}, 1, 1, {1:.12g}\n{0}, 2, 2, {2:.12g}\n{0}, 3, 3, {3:.12g}\n", n + 1, u.x(), u.y(), u.z());
   }
   out += "*NODE PRINT, NSET=GEAR_HELD\nRF\n*END STEP\n";
   return out;

@@ -87,6 +87,7 @@ class Search {
       influence_.emplace_back(w, problem.compliance);
       gap_.insert(gap_.end(), w.gap.begin(), w.gap.end());
       area_.insert(area_.end(), w.size(), w.dx * w.dy);
+      for (std::size_t k = 0; k < w.size(); ++k) lever_.push_back(w.lever_of(k));
     }
     n_ = gap_.size();
     p_.assign(n_, 0.0), u_.assign(n_, 0.0), t_.assign(n_, 0.0), q_.assign(n_, 0.0);
@@ -114,13 +115,16 @@ class Search {
   }
 
  private:
-  /// Mean over the pressed cells, by area; with the gap added.
+  /// The approach that fits the pressed cells best, by area: their mean where all levers are 1; with the gap added.
   [[nodiscard]] double mean(const std::vector<double>& v, bool gap) const {
     double sum = 0, area = 0;
     for (std::size_t k = 0; k < n_; ++k)
-      if (p_[k] > 0) sum += area_[k] * (v[k] + (gap ? gap_[k] : 0)), area += area_[k];
+      if (p_[k] > 0)
+        sum += area_[k] * lever_[k] * (v[k] + (gap ? gap_[k] : 0)), area += area_[k] * lever_[k] * lever_[k];
     return sum / area;
   }
+  /// What is left of the gap of a cell when the bodies approach by X.
+  [[nodiscard]] double open(std::size_t k, double X) const { return u_[k] + gap_[k] - lever_[k] * X; }
   void displace(const std::vector<double>& p, std::vector<double>& u) {
     std::fill(u.begin(), u.end(), 0.0);
     std::size_t at = 0;
@@ -154,7 +158,7 @@ class Search {
   }
   void balance() {
     double sum = 0;
-    for (std::size_t k = 0; k < n_; ++k) sum += p_[k] * area_[k];
+    for (std::size_t k = 0; k < n_; ++k) sum += p_[k] * area_[k] * lever_[k];
     for (double& p : p_) p *= problem_.force / sum;
   }
   /// The direction of the next step; the squared rest.
@@ -163,11 +167,10 @@ class Search {
     double G = 0;
     for (std::size_t k = 0; k < n_; ++k)
       if (p_[k] > 0) {
-        const double r = u_[k] + gap_[k] - X;
+        const double r = open(k, X);
         G += area_[k] * r * r;
       }
-    for (std::size_t k = 0; k < n_; ++k)
-      t_[k] = p_[k] > 0 ? u_[k] + gap_[k] - X + (conjugate ? G / G_old * t_[k] : 0) : 0;
+    for (std::size_t k = 0; k < n_; ++k) t_[k] = p_[k] > 0 ? open(k, X) + (conjugate ? G / G_old * t_[k] : 0) : 0;
     return G;
   }
   /// Along the direction to the least energy; lets go what would pull, presses what overlaps. The change, part of F.
@@ -176,14 +179,14 @@ class Search {
     const double q_mean = mean(q_, false);
     double rt = 0, qt = 0;
     for (std::size_t k = 0; k < n_; ++k)
-      if (p_[k] > 0) rt += area_[k] * (u_[k] + gap_[k] - X) * t_[k], qt += area_[k] * (q_[k] - q_mean) * t_[k];
+      if (p_[k] > 0) rt += area_[k] * open(k, X) * t_[k], qt += area_[k] * (q_[k] - lever_[k] * q_mean) * t_[k];
     const double tau = qt > 0 ? rt / qt : 0;
     old_ = p_;
     conjugate = true;
     for (std::size_t k = 0; k < n_; ++k) {
       if (old_[k] > 0) p_[k] = std::max(0.0, old_[k] - tau * t_[k]);
-      else if (std::isfinite(gap_[k]) && u_[k] + gap_[k] < X) {
-        p_[k] = std::max(0.0, -tau * (u_[k] + gap_[k] - X));
+      else if (std::isfinite(gap_[k]) && open(k, X) < 0) {
+        p_[k] = std::max(0.0, -tau * open(k, X));
         conjugate = false;
       }
     }
@@ -199,8 +202,8 @@ class Search {
     out.rounds = rounds;
     for (std::size_t k = 0; k < n_; ++k) {
       if (!std::isfinite(gap_[k])) continue;
-      const double open = u_[k] + gap_[k] - out.approach;
-      out.residual = std::max(out.residual, (p_[k] > 0 ? std::abs(open) : -open) / out.approach);
+      const double left = open(k, out.approach);
+      out.residual = std::max(out.residual, (p_[k] > 0 ? std::abs(left) : -left) / out.approach);
     }
     out.pressure = p_;
     return out;
@@ -209,7 +212,7 @@ class Search {
   const CellProblem& problem_;
   std::vector<WindowInfluence> influence_;
   std::size_t n_ = 0;
-  std::vector<double> gap_, area_, p_, u_, t_, q_, old_;
+  std::vector<double> gap_, area_, lever_, p_, u_, t_, q_, old_;
 };
 
 }  // namespace

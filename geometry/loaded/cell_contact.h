@@ -1,4 +1,4 @@
-// Contact of elastic bodies on rectangular cells: pressures that only press, under one common approach. For places
+// Contact of elastic bodies on rectangular cells: pressures that only press, under one common motion. For places
 // where flanks touch in a point or on an edge, which strips do not resolve. Lengths mm, forces N, pressures MPa.
 // Derivation: docs/loaded_contact.md 5; Love 1929 for the cell, Polonsky and Keer 1999 for the search.
 #pragma once
@@ -23,14 +23,16 @@ struct CellWindow {
   [[nodiscard]] std::size_t size() const { return gap.size(); }
   /// Displacement of a cell under a force spread over a block of cells, from the block's images at free ends, mm/N;
   /// empty: there are none near.
-  Eigen::MatrixXd images{};   ///< cells x blocks
-  std::vector<int> blocks{};  ///< block of every cell
+  Eigen::MatrixXd images{};     ///< cells x blocks
+  std::vector<int> blocks{};    ///< block of every cell
+  std::vector<double> lever{};  ///< of every cell: by how much it nears when the bodies approach by 1; empty: 1
+  [[nodiscard]] double lever_of(std::size_t cell) const { return lever.empty() ? 1.0 : lever[cell]; }
 };
 
 struct CellProblem {
   std::vector<CellWindow> windows;
   double compliance = 0;  ///< (1 - nu^2)/(pi E) of both bodies together
-  double force = 0;       ///< normal force of all windows, > 0
+  double force = 0;       ///< sum of the cells' forces times their levers, > 0
   /// What the bodies have beyond the half-spaces of their windows: S^T R S of the forces of all cells.
   Eigen::SparseMatrix<double, Eigen::RowMajor> stations;  ///< S, stations x cells
   Eigen::MatrixXd remainder;                              ///< R

@@ -46,7 +46,9 @@ struct Segment {
   double beyond = 0;            ///< > 0: the centre lies off the flank, the nearest material is so far away
   bool at_end = false;          ///< first or last segment on the flank
   Vec3 nearest = Vec3::Zero();  ///< the point itself; beyond the ends the nearest material, housing
-  double r = 0, Z = 0, R = 0;   ///< of `nearest`: radius about the gear's axis, section and radius of the pinion
+  /// Of `nearest`: radius about the gear's axis and height along it; section and radius of the pinion. Of a bevel pair
+  /// cone distance and height over the pitch cone, of the wheel and of the pinion.
+  double r = 0, z = 0, Z = 0, R = 0;
 };
 
 /// The line of one tooth.

@@ -2,6 +2,8 @@
 // forces in N, E in MPa. Template on the scalar. Derivation: docs/loaded_contact.md 3.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "geometry/base/vec.h"
@@ -31,6 +33,32 @@ HertzLine<S> hertz_line(const S& w, const S& modulus, const S& curvature) {
   using std::atan, std::sqrt;
   const S pi = S(4) * atan(S(1));
   return {S(sqrt(S(S(4) * w / (pi * modulus * curvature)))), S(sqrt(S(w * modulus * curvature / pi)))};
+}
+
+/// Half axes of the ellipse that a force presses, along the larger and the smaller curvature, within some per cent.
+/// Source: Brewe and Hamrock 1977. @param k1, k2  relative curvatures, the larger first, 1/mm
+template <typename S>
+std::array<S, 2> ellipse_sides(const S& force, const S& modulus, const S& k1, const S& k2) {
+  using std::atan, std::cbrt, std::max, std::pow;
+  const S pi = S(4) * atan(S(1));
+  const S ratio = max(S(1), S(k1 / max(k2, S(1e-9 * k1)))), round = pow(ratio, S(2 / pi));
+  const S integral = 1 + (pi / 2 - 1) / ratio, size = 3 * force * integral / (pi * modulus * (k1 + k2));
+  return {S(cbrt(size / round)), S(cbrt(size * round * round))};
+}
+
+/// Pressure under a line of contact that runs along a rounded edge: w [N/mm] of it, edge radius [mm], k the relative
+/// curvature of the flanks, for that of the mate: either is small against 1/radius.
+template <typename S>
+S pressure_along_edge(const S& w, const S& modulus, const S& radius, const S& k) {
+  return hertz_line(w, modulus, S(1 / radius + k)).pressure;
+}
+/// Under the end of a line of contact that crosses a rounded edge: an ellipse of the curvatures 1/radius and k under
+/// the force of the last segment; an upper bound.
+template <typename S>
+S pressure_across_edge(const S& force, const S& modulus, const S& radius, const S& k) {
+  using std::atan, std::max, std::min;
+  const auto sides = ellipse_sides(force, modulus, max(S(1 / radius), k), min(S(1 / radius), k));
+  return S(3 * force / (8 * atan(S(1)) * sides[0] * sides[1]));
 }
 
 /// Displacement at a place of the half-space under a strip of length D with a semi-ellipse of half width b across,

@@ -170,6 +170,7 @@ Segment segment_of(const LineOfTooth& line, const LinePlace& p) {
   s.theta = p.theta, s.B = p.B, s.point = p.point, s.normal = p.normal;
   s.nearest = p.nearest;
   s.r = radius(p.nearest);
+  s.z = p.nearest.z();
   s.Z = line.section(p.nearest);
   s.R = line.from_axis(p.nearest).norm();
   s.curvature = p.curvature;

@@ -8,6 +8,7 @@
 #include "geometry/base/angle.h"
 #include "geometry/loaded/carriers.h"
 #include "geometry/loaded/cell_position.h"
+#include "geometry/loaded/face_flanks.h"
 #include "geometry/loaded/half_space.h"
 
 namespace toothpath::loaded {
@@ -198,23 +199,34 @@ void describe(const LoadedPair& pair, const PositionProblem& problem, const Cont
   out.tangent = 1 / forces.yield(0, 0);
   out.line_mm = problem.line_mm();
   out.residual = problem.residual();
-  Carriers carriers(pair, out);
+  std::vector<int> rings;
+  for (const PairRing& ring : pair.rings) rings.push_back(ring.ring);
+  Carriers carriers(rings, out);
   for (std::size_t k = 0; k < problem.places().size(); ++k) {
     const Segment& s = problem.places()[k];
     const double f = forces.force(static_cast<Eigen::Index>(k));
     out.segments.push_back(
         {s, f, f > 0 ? half_widths[k] : 0, f > 0 ? hertz_line(f / s.length, pair.modulus, s.curvature).pressure : 0});
     if (!(f > 0)) continue;
-    carriers.add(s.ring, s.tooth, f, problem.axial_share(s), s.curvature);
+    carriers.add(s.ring, s.tooth, f, s.curvature);
+    out.axial_n -= f * problem.axial_share(s);
+    out.gear_axial_n += f * s.normal.z();
+    out.gear_torque_nmm += f * s.point.cross(s.normal).z();
+    const contact::Pinion<double>& pinion = pair.rings.front().moved;
+    out.pinion_torque_nmm += f * (s.point - pinion.foot).cross(s.normal).dot(pinion.a);
     const double p = out.segments.back().pressure;
     if (s.at_end || s.beyond > 0) {
       out.end_pressure = std::max(out.end_pressure, p);
       out.end_line_load = std::max(out.end_line_load, f / s.length);
+      if (pair.options.edge_radius_mm > 0)
+        out.edge_pressure = std::max(out.edge_pressure,
+                                     pressure_across_edge(f, pair.modulus, pair.options.edge_radius_mm, s.curvature));
     } else {
       out.pressure = std::max(out.pressure, p);
     }
   }
   carriers.finish(F);
+  out.gear_torque_nmm = std::abs(out.gear_torque_nmm), out.pinion_torque_nmm = std::abs(out.pinion_torque_nmm);
 }
 
 }  // namespace
@@ -274,7 +286,8 @@ Result<LoadedPair> make_loaded_pair(const face_gear::FaceGear& gear, int side, i
 }
 
 Result<LoadedPosition> loaded_position(const LoadedPair& pair, const Load& load, double phi) {
-  if (pair.options.cells || pair.pinion_teeth != pair.shaper_teeth) return cell_position(pair, load, phi);
+  if (pair.options.cells || pair.pinion_teeth != pair.shaper_teeth)
+    return cell_position(FaceFlanks(pair, load.torque_nmm / pair.lever, phi), load, phi);
   PositionProblem problem(pair, load, phi);
   LoadedPosition out;
   out.phi = phi;
@@ -302,18 +315,27 @@ Result<LoadedPosition> loaded_position(const LoadedPair& pair, const Load& load,
   return out;
 }
 
+Result<std::vector<LoadedPosition>> positions_over(int positions, double pitch,
+                                                   const std::function<Result<LoadedPosition>(double phi)>& position) {
+  std::vector<std::optional<Result<LoadedPosition>>> found(static_cast<std::size_t>(positions));
+  tbb::parallel_for(std::size_t(0), found.size(),
+                    [&](std::size_t k) { found[k] = position(pitch * double(k) / positions); });
+  std::vector<LoadedPosition> out;
+  for (auto& one : found) {
+    if (!*one) return one->error();
+    out.push_back(std::move(**one));
+  }
+  return out;
+}
+
 Result<LoadedCycle> loaded_cycle(const LoadedPair& pair, const Load& load) {
   LoadedCycle cycle;
   cycle.normal_n = load.torque_nmm / pair.lever;
   cycle.single_axial_n = cycle.normal_n * std::abs(pair.rings.back().surface.shaper.sin_bb);
-  std::vector<std::optional<Result<LoadedPosition>>> found(static_cast<std::size_t>(load.positions));
-  tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t k) {
-    found[k] = loaded_position(pair, load, 2 * kPi / pair.shaper_teeth * double(k) / load.positions);
-  });
-  for (auto& position : found) {
-    if (!*position) return position->error();
-    cycle.positions.push_back(std::move(**position));
-  }
+  auto found = positions_over(load.positions, 2 * kPi / pair.shaper_teeth,
+                              [&](double phi) { return loaded_position(pair, load, phi); });
+  if (!found) return found.error();
+  cycle.positions = std::move(*found);
   return cycle;
 }
 

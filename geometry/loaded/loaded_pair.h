@@ -22,6 +22,7 @@ struct PairOptions {
   std::function<double(const Segment&)> gap;
   /// Pressures on cells and not on strips along lines, also for a pinion of as many teeth as the shaper.
   bool cells = false;
+  double edge_radius_mm = 0;  ///< rounding of the edges of the teeth; 0: not stated
 };
 
 struct PairRing {
@@ -73,9 +74,14 @@ struct LoadedPosition {
   int pairs = 0;                      ///< teeth that carry more than a thousandth, in any ring
   std::vector<double> ring_force;     ///< normal force of every ring, N
   double axial_n = 0;                 ///< on the pinion, along its axis away from the gear's
-  double share_per_mm = 0;            ///< change of the outermost ring's share with the pinion's place, held pinions
+  double gear_axial_n = 0;            ///< on the gear, along its axis away from the pinion
+  /// What the forces make about the axes of gear and pinion, N mm: what is asked for of the one that carries the
+  /// torque; of the other the ratio of teeth only where flanks are conjugate.
+  double gear_torque_nmm = 0, pinion_torque_nmm = 0;
+  double share_per_mm = 0;  ///< change of the outermost ring's share with the pinion's place, held pinions
   double pressure = 0, end_pressure = 0;  ///< largest of the inner segments; of the first and last of a line
   double end_line_load = 0;               ///< largest load of an end segment, N/mm
+  double edge_pressure = 0;               ///< largest under edges of the stated radius; 0: no edge carries, no radius
   double pressure_radius_mm = 0;          ///< least radius of relative curvature where a line presses, mm
   double residual = 0;                    ///< of balance and complementarity, part of load and approach
   std::vector<PressedSegment> segments;
@@ -90,6 +96,9 @@ struct LoadedCycle {
 /// @param phi  turn of the shaper that stands where the gear does; a pitch is 2 pi/N_s
 /// Refused: no pair touches at some position; a load that does not settle.
 [[nodiscard]] Result<LoadedPosition> loaded_position(const LoadedPair& pair, const Load& load, double phi);
+/// Positions 0 .. positions - 1 of a pitch, in parallel. Refused: as the first position that is.
+[[nodiscard]] Result<std::vector<LoadedPosition>> positions_over(
+    int positions, double pitch, const std::function<Result<LoadedPosition>(double phi)>& position);
 /// The positions of one pitch, in parallel; the same bits on any number of threads.
 [[nodiscard]] Result<LoadedCycle> loaded_cycle(const LoadedPair& pair, const Load& load);
 

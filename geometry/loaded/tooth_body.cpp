@@ -98,29 +98,16 @@ ToothSection pinion_section(const PinionProfile& profile, int teeth, const elast
   return s;
 }
 
-Status finish(ToothBody& body, const BodyPlan& plan) {
-  auto C = elastic::tooth_compliance(body.sector, plan.nu, plan.teeth);
-  if (!C) return C.error();
-  body.reach = C->reach;
-  body.reciprocity = C->reciprocity;
-  const Eigen::MatrixXd H = hat_influence(body.sector, body.ends) * half_space_compliance(plan.E, plan.nu);
-  for (int o = -C->reach; o <= C->reach; ++o) {
-    const auto at = static_cast<std::size_t>(o + C->reach), other = static_cast<std::size_t>(C->reach - o);
-    Eigen::MatrixXd R = (C->at_offset[at] + C->at_offset[other].transpose()) / (2 * plan.E);
-    if (o == 0) R -= (H + H.transpose()) / 2;
-    body.remainder.push_back(std::move(R));
-  }
-  return Ok{};
-}
-
 }  // namespace
 
 Vec3 FreeEnds::mirrored(const Vec3& p, std::size_t end) const {
   const Vec3 v = p - origin;
   const double along = v.dot(axis);
-  if (!cylinders) return p + axis * (2 * (at[end] - along));
+  if (kind == Kind::planes) return p + axis * (2 * (at[end] - along));
   const Vec3 out = v - axis * along;
   const double r = out.norm();
+  if (kind == Kind::cones)
+    return p + (out * (sin_delta / r) + axis * cos_delta) * (2 * (at[end] - r * sin_delta - along * cos_delta));
   return p + out * (2 * (at[end] - r) / r);
 }
 
@@ -177,7 +164,7 @@ double ToothBody::remainder_at(const Weights& place, const Weights& force, int o
 Result<ToothBody> gear_bricks(const face_gear::FaceGearSurface<double>& f, int side, double inner_mm, double outer_mm,
                               const elastic::SectorPlan& plan) {
   ToothBody body;
-  body.ends = {true, {inner_mm, outer_mm}, Vec3::Zero(), Vec3::UnitZ()};
+  body.ends.at = {inner_mm, outer_mm};
   body.face_from = inner_mm, body.face_to = outer_mm;
   elastic::SectorPlan bricks = plan;
   for (;; ++bricks.fillet) {
@@ -205,7 +192,7 @@ Result<ToothBody> gear_bricks(const face_gear::FaceGearSurface<double>& f, int s
 Result<ToothBody> pinion_bricks(const contact::Pinion<double>& pinion, const PinionProfile& profile, int side,
                                 double Z_from, double Z_to, const elastic::SectorPlan& plan) {
   ToothBody body;
-  body.ends = {false, {Z_from, Z_to}, Vec3::Zero(), Vec3::UnitZ()};
+  body.ends.kind = FreeEnds::Kind::planes, body.ends.at = {Z_from, Z_to};
   body.face_from = Z_from, body.face_to = Z_to;
   elastic::SectorPlan bricks = plan;
   bricks.rim_mm = std::min(bricks.rim_mm, 0.75 * profile.r_f);
@@ -230,11 +217,26 @@ Result<ToothBody> pinion_bricks(const contact::Pinion<double>& pinion, const Pin
   return body;
 }
 
+Status add_remainder(ToothBody& body, const BodyPlan& plan) {
+  auto C = elastic::tooth_compliance(body.sector, plan.nu, plan.teeth);
+  if (!C) return C.error();
+  body.reach = C->reach;
+  body.reciprocity = C->reciprocity;
+  const Eigen::MatrixXd H = hat_influence(body.sector, body.ends) * half_space_compliance(plan.E, plan.nu);
+  for (int o = -C->reach; o <= C->reach; ++o) {
+    const auto at = static_cast<std::size_t>(o + C->reach), other = static_cast<std::size_t>(C->reach - o);
+    Eigen::MatrixXd R = (C->at_offset[at] + C->at_offset[other].transpose()) / (2 * plan.E);
+    if (o == 0) R -= (H + H.transpose()) / 2;
+    body.remainder.push_back(std::move(R));
+  }
+  return Ok{};
+}
+
 Result<ToothBody> gear_body(const face_gear::FaceGearSurface<double>& f, int side, double inner_mm, double outer_mm,
                             const BodyPlan& plan) {
   auto body = gear_bricks(f, side, inner_mm, outer_mm, plan.bricks);
   if (!body) return body;
-  if (const auto done = finish(*body, plan); !done) return done.error();
+  if (const auto done = add_remainder(*body, plan); !done) return done.error();
   return body;
 }
 
@@ -242,7 +244,7 @@ Result<ToothBody> pinion_body(const contact::Pinion<double>& pinion, const Pinio
                               double Z_from, double Z_to, const BodyPlan& plan) {
   auto body = pinion_bricks(pinion, profile, side, Z_from, Z_to, plan.bricks);
   if (!body) return body;
-  if (const auto done = finish(*body, plan); !done) return done.error();
+  if (const auto done = add_remainder(*body, plan); !done) return done.error();
   return body;
 }
 

@@ -1,5 +1,5 @@
-// The teeth of a face gear and of its pinion as elastic bodies: bricks on the exact surfaces, and what a real tooth
-// adds to a half-space. Derivation: docs/loaded_contact.md 3, 4.
+// The teeth of gears as elastic bodies, those of a face gear and of its pinion: bricks on the exact surfaces, and what
+// a real tooth adds to a half-space. Derivation: docs/loaded_contact.md 3, 4.
 #pragma once
 
 #include <array>
@@ -12,9 +12,13 @@ namespace toothpath::loaded {
 
 /// The free ends of a face: surfaces at which a strip is mirrored.
 struct FreeEnds {
-  bool cylinders = true;       ///< about the axis, at these radii; else planes across it, at these heights
+  /// Cylinders about the axis, at these radii; planes across it, at these heights; cones about it, square to a pitch
+  /// cone with its apex at the origin, at these cone distances.
+  enum class Kind { cylinders, planes, cones };
+  Kind kind = Kind::cylinders;
   std::array<double, 2> at{};  ///< mm
   Vec3 origin = Vec3::Zero(), axis = Vec3::UnitZ();
+  double sin_delta = 0, cos_delta = 1;  ///< of the pitch cone
   /// The image of a point at one end: the same distance beyond it.
   [[nodiscard]] Vec3 mirrored(const Vec3& p, std::size_t end) const;
 };
@@ -76,6 +80,10 @@ struct BodyPlan {
 /// along d, y along b, z along the axis; its tooth 0 is turned onto the x axis at section L0.
 [[nodiscard]] Result<ToothBody> pinion_body(const contact::Pinion<double>& pinion, const PinionProfile& profile,
                                             int side, double Z_from, double Z_to, const BodyPlan& plan);
+
+/// Fills in what the body's bricks have beyond the half-space of its stations. Refused: a stiffness that is not
+/// positive definite.
+[[nodiscard]] Status add_remainder(ToothBody& body, const BodyPlan& plan);
 
 /// Displacement of the stations of a half-space under the hats of the stations: H_ik = integral of hat_k/distance, over
 /// its area, 1/mm; with its images at the free ends.

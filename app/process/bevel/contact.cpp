@@ -6,6 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/job/file.h"
+#include "app/process/bevel/loaded_contact.h"
+#include "app/process/under_load/loaded_page.h"
+#include "app/process/under_load/settings.h"
 #include "app/report/page/study_page.h"
 #include "app/report/svg/contact_pattern.h"
 #include "geometry/base/angle.h"
@@ -23,6 +26,7 @@ struct PairAnalysis {
   double compound_mm = 0.006;
   std::vector<contact::BevelContact> walls;  ///< L, U
   std::vector<contact::MismatchChange> changes;
+  std::optional<under_load::LoadedContact> loaded;  ///< where the settings have a load
 };
 
 constexpr std::array<const char*, 2> kWall = {"L", "U"};
@@ -154,6 +158,12 @@ std::string page_of(const PairAnalysis& a) {
   page.charts = charts_of(a);
   page.figures = figures_of(a);
   page.tables = {wall_table(a), change_table(a)};
+  if (a.loaded) {
+    page.introduction.push_back(under_load::loaded_introduction(*a.loaded));
+    for (const auto& note : a.loaded->notes) page.introduction.push_back(note);
+    page.tables.push_back(under_load::loaded_table(*a.loaded));
+    for (auto& chart : under_load::loaded_charts(*a.loaded)) page.charts.push_back(std::move(chart));
+  }
   return study_page_html(page);
 }
 
@@ -215,6 +225,7 @@ std::string json_of(const PairAnalysis& a) {
                                {"rms_after_um", c.rms_after_mm * 1000},
                                {"measured", c.measured}});
   json["finding"] = finding(a);
+  if (a.loaded) json["loaded"] = under_load::loaded_json(*a.loaded);
   return json.dump(1) + "\n";
 }
 
@@ -253,11 +264,9 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   const bevel_gear::BevelGear &pinion = a.job_is_pinion ? gear : mate, &wheel = a.job_is_pinion ? mate : gear;
   a.pinion_teeth = pinion.parameters().teeth;
   a.wheel_teeth = wheel.parameters().teeth;
-  a.assembly.offset_mm = asked.offset_error_mm.value_or(0);
-  a.assembly.pinion_axial_mm = asked.axial_error_mm.value_or(0);
-  a.assembly.wheel_axial_mm = asked.wheel_axial_error_mm.value_or(0);
-  a.assembly.shaft_angle_rad = radians(asked.angle_error_deg.value_or(0));
-  a.compound_mm = asked.compound_um.value_or(6) / 1000;
+  const job::ContactSettings settings = under_load::contact_settings(job, asked);
+  a.assembly = assembly_of(settings.moved);
+  a.compound_mm = settings.compound_mm;
   const auto pair = contact::BevelPair::make(pinion, wheel, a.assembly);
   if (!pair) return std::vector{process::located(job, "gear", pair.error())};
   contact::BevelContactOptions options;
@@ -272,6 +281,11 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   });
   if (!changes) return std::vector{process::located(job, "gear", changes.error())};
   a.changes = std::move(changes.value());
+  if (settings.load) {
+    auto loaded = clock.run("load", [&] { return analyse_loaded(job, pinion, wheel, settings); });
+    if (auto* errors = loaded.refused()) return std::move(*errors);
+    a.loaded = std::move(loaded).value();
+  }
 
   process::ContactFound found;
   found.json = json_of(a);
@@ -282,6 +296,11 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
                  {"transmission.csv", transmission_csv(a)},
                  {"contact.json", found.json},
                  {"contact.html", page_of(a)}};
+  if (a.loaded) {
+    found.summary += under_load::loaded_summary(*a.loaded);
+    found.files.emplace_back("loaded.csv", under_load::loaded_csv(*a.loaded));
+    found.files.emplace_back("pressure.csv", under_load::pressure_csv(*a.loaded));
+  }
   return found;
 }
 

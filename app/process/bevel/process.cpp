@@ -214,13 +214,10 @@ class BevelProcess final : public process::GearProcess {
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
     for (const auto& [given, option] : {std::pair(asked.pinion_teeth.has_value(), "--pinion-teeth"),
                                         {asked.as_cut, "--as-cut"},
-                                        {asked.optimise, "--optimise"}})
+                                        {asked.optimise, "--optimise"},
+                                        {!asked.ccx_dir.empty(), "--ccx"}})
       if (given)
         return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs a face_gear", job_.gear_type(), option);
-    if (asked.torque_Nm || (job_.contact && job_.contact->load))
-      return fail_at(job_.contact && job_.contact->load ? job_.where("contact.load") : job_.where("gear.type"),
-                     "loaded contact of bevel pairs is not computed: their flanks touch in points and on edges, which "
-                     "the segments of a line do not resolve");
     return Ok{};
   }
   [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,

@@ -1,6 +1,8 @@
 #include "app/process/face/contact.h"
 
 #include "app/process/face/contact_figures.h"
+#include "app/process/under_load/loaded_page.h"
+#include "app/process/under_load/settings.h"
 #include "app/report/page/study_page.h"
 #include "geometry/base/angle.h"
 
@@ -45,14 +47,10 @@ std::string contact_page(const ContactAnalysis& a) {
     page.tables.push_back(ease_off::table_page(a.optimised->table, "Misaligned, with what was found"));
   }
   if (a.loaded) {
-    page.introduction.push_back(
-        fmt::format("Under load both members are elastic: {:g} N m on the gear, the pinion {} along its axis. All "
-                    "teeth and rings share "
-                    "it; the first touch of the unloaded flanks is the zero of approach and transmission error.",
-                    a.loaded->torque_gear_Nm, a.loaded->floating ? "floats" : "is held"));
+    page.introduction.push_back(under_load::loaded_introduction(*a.loaded));
     for (const auto& note : a.loaded->notes) page.introduction.push_back(note);
-    page.tables.push_back(loaded_table(*a.loaded));
-    for (auto& chart : loaded_charts(*a.loaded)) page.charts.push_back(std::move(chart));
+    page.tables.push_back(under_load::loaded_table(*a.loaded));
+    for (auto& chart : under_load::loaded_charts(*a.loaded)) page.charts.push_back(std::move(chart));
   }
   return study_page_html(page);
 }
@@ -94,28 +92,11 @@ process::ValueOrErrors<Ok> misalign(const job::Job& job, const face_gear::FaceGe
 
 }  // namespace
 
-job::ContactSettings contact_settings(const job::Job& job, const process::ContactAsked& asked) {
-  job::ContactSettings s = job.contact.value_or(job::ContactSettings{});
-  if (asked.pinion_teeth) s.pinion_teeth = *asked.pinion_teeth;
-  if (asked.offset_error_mm) s.moved.offset_mm = *asked.offset_error_mm;
-  if (asked.axial_error_mm) s.moved.axial_mm = *asked.axial_error_mm;
-  if (asked.angle_error_deg) s.moved.angle_rad = radians(*asked.angle_error_deg);
-  if (asked.wheel_axial_error_mm) s.moved.gear_axial_mm = *asked.wheel_axial_error_mm;
-  if (asked.compound_um) s.compound_mm = *asked.compound_um / 1000;
-  if (asked.torque_Nm) {
-    if (!s.load) s.load.emplace();
-    s.load->torque_Nm = *asked.torque_Nm;
-    s.load->on_pinion = asked.torque_on_pinion;
-  }
-  if (s.load && asked.pinion_held) s.load->pinion_axial = job::PinionHold::held;
-  if (s.load && asked.positions) s.load->positions = *asked.positions;
-  return s;
-}
-
 process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, const face_gear::FaceGear& gear,
                                                         const process::ContactAsked& asked,
                                                         const process::CutFlanks* cut, app::StageClock& clock) {
-  auto analysed = clock.run("contact", [&] { return analyse_contact(job, gear, contact_settings(job, asked), cut); });
+  auto analysed =
+      clock.run("contact", [&] { return analyse_contact(job, gear, under_load::contact_settings(job, asked), cut); });
   if (auto* errors = analysed.refused()) return std::move(*errors);
   ContactAnalysis& analysis = analysed.value();
   if (cut != nullptr) {
@@ -143,8 +124,8 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
                  {"contact.json", found.json},
                  {"contact.html", contact_page(analysis)}};
   if (analysis.loaded) {
-    found.files.emplace_back("loaded.csv", loaded_csv(*analysis.loaded));
-    found.files.emplace_back("pressure.csv", pressure_csv(*analysis.loaded));
+    found.files.emplace_back("loaded.csv", under_load::loaded_csv(*analysis.loaded));
+    found.files.emplace_back("pressure.csv", under_load::pressure_csv(*analysis.loaded));
     if (!asked.ccx_dir.empty()) {
       auto decks = loaded_decks(job, gear, *analysis.loaded);
       if (auto* errors = decks.refused()) return std::move(*errors);

@@ -8,9 +8,6 @@
 
 namespace toothpath::face {
 
-/// Settings of [contact] with what the command line says instead.
-[[nodiscard]] job::ContactSettings contact_settings(const job::Job& job, const process::ContactAsked& asked);
-
 /// contact.csv, ease_off.csv, transmission.csv, contact.json and contact.html. Refused: a pinion that cannot run.
 [[nodiscard]] process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job,
                                                                       const face_gear::FaceGear& gear,

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/units.h"
+#include "app/process/under_load/loaded_page.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
 
@@ -335,7 +336,7 @@ std::string contact_json(const ContactAnalysis& a) {
   }
   if (a.misalignments) json["misalignments"] = ease_off::table_json(*a.misalignments);
   if (a.optimised) json["optimised"] = ease_off::optimised_json(*a.optimised);
-  if (a.loaded) json["loaded"] = loaded_json(*a.loaded);
+  if (a.loaded) json["loaded"] = under_load::loaded_json(*a.loaded);
   json["notes"] = a.notes;
   return json.dump(2) + "\n";
 }
@@ -372,7 +373,7 @@ std::string contact_summary(const ContactAnalysis& a) {
   }
   if (a.misalignments) out += page::table_text(ease_off::table_page(*a.misalignments, ""));
   if (a.optimised) out += ease_off::optimised_summary(*a.optimised);
-  if (a.loaded) out += loaded_summary(*a.loaded);
+  if (a.loaded) out += under_load::loaded_summary(*a.loaded);
   for (const auto& note : a.notes) out += "  note: " + note + "\n";
   return out;
 }

@@ -42,7 +42,7 @@ struct ContactAnalysis {
   double pitch_radius_mm = 0, base_radius_mm = 0;  ///< L_p and M2: levers of the transmission error
   double pinion_r_b_mm = 0, pinion_r_p_mm = 0, pinion_r_a_mm = 0;
   std::vector<ContactOfSide> sides;                          ///< +1, -1 exact; then +1, -1 as cut
-  std::optional<LoadedContact> loaded;                       ///< where the settings have a load
+  std::optional<under_load::LoadedContact> loaded;           ///< where the settings have a load
   std::optional<ease_off::MisalignmentTable> misalignments;  ///< where the settings have a box
   std::optional<ease_off::Optimised> optimised;              ///< where that was asked for
   std::string route;                                         ///< how the cut surface was made; empty: there is none

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/base/units.h"
+#include "app/process/under_load/loaded_page.h"
 #include "app/report/svg/contact_pattern.h"
 #include "app/report/svg/html_text.h"
 #include "app/report/svg/plot.h"
@@ -196,8 +197,8 @@ std::string contact_section_body(const ContactAnalysis& a) {
   std::vector<svg::LineChart> charts = contact_charts(a);
   if (a.loaded) {
     for (const auto& note : a.loaded->notes) out += "<p class=\"note\">" + svg::html_escape(note) + "</p>\n";
-    tables.push_back(loaded_table(*a.loaded));
-    for (auto& chart : loaded_charts(*a.loaded)) charts.push_back(std::move(chart));
+    tables.push_back(under_load::loaded_table(*a.loaded));
+    for (auto& chart : under_load::loaded_charts(*a.loaded)) charts.push_back(std::move(chart));
   }
   for (const auto& t : tables) {
     out += "<div class=\"table\"><table><thead><tr>";

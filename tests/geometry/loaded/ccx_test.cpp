@@ -9,7 +9,10 @@
 #include <sstream>
 
 #include "geometry/loaded/ccx_deck.h"
+#include "geometry/loaded_bevel/bevel_body.h"
+#include "geometry/loaded_bevel/bevel_deck.h"
 #include "tests/geometry/loaded/trial_gear.h"
+#include "tests/geometry/loaded_bevel/bevel_pairs.h"
 
 namespace toothpath::test {
 namespace {
@@ -36,6 +39,23 @@ std::vector<std::pair<int, Vec3>> run_ccx(const std::string& deck, const std::st
   return out;
 }
 
+/// Of reactions about an axis: the nodes stand in the deck.
+double moment_of(const std::string& deck, const std::vector<std::pair<int, Vec3>>& reactions, const Vec3& origin,
+                 const Vec3& axis) {
+  std::istringstream in(deck);
+  std::string line;
+  std::vector<Vec3> nodes;
+  while (std::getline(in, line) && line.find("*ELEMENT") == std::string::npos) {
+    int id = 0;
+    Vec3 p;
+    if (std::sscanf(line.c_str(), "%d, %lf, %lf, %lf", &id, &p.x(), &p.y(), &p.z()) == 4) nodes.push_back(p);
+  }
+  double moment = 0;
+  for (const auto& [node, f] : reactions)
+    moment += (nodes.at(static_cast<std::size_t>(node - 1)) - origin).cross(f).dot(axis);
+  return moment;
+}
+
 TEST(CalculiX, AgreesOnTheBodies) {
   ASSERT_TRUE(ccx_is_there()) << "calculix-ccx is not installed; tools/packages.sh names it";
   const auto gear = trial_gear();
@@ -46,7 +66,10 @@ TEST(CalculiX, AgreesOnTheBodies) {
   const auto profile = loaded::pinion_profile(pinion, ring.surface.shaper.h_f, 1.2);
   const auto on_gear = loaded::gear_bricks(ring.surface, 1, ring.zone.inner_radius_mm, ring.zone.outer_radius_mm, plan);
   const auto on_pinion = loaded::pinion_bricks(pinion, profile, 1, 551, 584, plan);
-  for (const auto* body : {&on_gear, &on_pinion}) {
+  plan.rim_mm = 20;
+  const auto on_wheel = loaded_bevel::bevel_bricks(herringbone_gears().second, 1, 1, plan),
+             on_bevel_pinion = loaded_bevel::bevel_bricks(herringbone_gears().first, 0, -1, plan);
+  for (const auto* body : {&on_gear, &on_pinion, &on_wheel, &on_bevel_pinion}) {
     ASSERT_TRUE(*body);
     const elastic::Sector& s = (*body)->sector;
     const auto C = elastic::tooth_compliance(s, 0.3, 3);
@@ -93,22 +116,37 @@ TEST(CalculiX, AgreesOnTheContact) {
   ASSERT_TRUE(text) << text.error().message;
   const auto reactions = run_ccx(*text, "contact");
   ASSERT_FALSE(reactions.empty());
-  // The moment about the gear's axis needs the nodes: they stand in the deck.
-  std::istringstream in(*text);
-  std::string line;
-  std::vector<Vec3> nodes;
-  while (std::getline(in, line) && line.find("*ELEMENT") == std::string::npos) {
-    int id = 0;
-    Vec3 p;
-    if (std::sscanf(line.c_str(), "%d, %lf, %lf, %lf", &id, &p.x(), &p.y(), &p.z()) == 4) nodes.push_back(p);
-  }
-  double moment = 0;
-  for (const auto& [node, f] : reactions) {
-    const Vec3& p = nodes.at(static_cast<std::size_t>(node - 1));
-    moment += p.x() * f.y() - p.y() * f.x();
-  }
+  const double moment = moment_of(*text, reactions, Vec3::Zero(), Vec3::UnitZ());
   const double theirs = std::abs(moment) / pair->lever, total = ours[0] + ours[1];
   EXPECT_NEAR(total, theirs, 0.05 * theirs) << ours[0] << " + " << ours[1];
+}
+
+/// W1 with W2, wall U, three teeth clamped, the wheel turned by 40 um: docs/loaded_contact.md 8.
+TEST(CalculiX, AgreesOnTheContactOfABevelPair) {
+  ASSERT_TRUE(ccx_is_there()) << "calculix-ccx is not installed; tools/packages.sh names it";
+  constexpr double kApproach = 0.04;
+  auto options = coarse_bodies();
+  for (auto* body : {&options.wheel, &options.pinion}) body->bricks = {4, 6, 3, 1, 3, 8, 20, 1};
+  const auto pair = single_pair(-1, options);
+  const double phi = 0.3 * pair.pair.pinion().pitch();
+  loaded::Load load;
+  load.torque_nmm = 1.5e6;
+  double ours = 0;
+  for (int round = 0; round < 5; ++round) {
+    const auto p = loaded_bevel::loaded_position(pair, load, phi);
+    ASSERT_TRUE(p) << p.error().message;
+    ours = load.torque_nmm;
+    load.torque_nmm += (kApproach - p->approach_mm) * p->tangent * pair.lever;
+  }
+  loaded_bevel::BevelDeckOptions deck;
+  deck.wheel.rim_mm = deck.pinion.rim_mm = 20;
+  deck.phi_1 = phi, deck.approach_mm = kApproach;
+  const auto text = loaded_bevel::bevel_deck(pair, 0, deck);
+  ASSERT_TRUE(text) << text.error().message;
+  const auto reactions = run_ccx(*text, "bevel");
+  ASSERT_FALSE(reactions.empty());
+  const double theirs = std::abs(moment_of(*text, reactions, pair.pair.wheel_apex(), pair.pair.wheel_axis()));
+  EXPECT_NEAR(ours, theirs, 0.1 * theirs);
 }
 
 }  // namespace

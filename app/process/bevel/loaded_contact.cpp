@@ -1,0 +1,73 @@
+#include "app/process/bevel/loaded_contact.h"
+
+#include <algorithm>
+
+#include "app/job/file.h"
+#include "geometry/loaded_bevel/bevel_body.h"
+#include "geometry/loaded_bevel/loaded_bevel_pair.h"
+
+namespace toothpath::bevel {
+namespace {
+
+/// Refused: a rim that does not fit the wheel. That of the pinion is no thicker than the pinion can have.
+Result<loaded_bevel::BevelPairOptions> pair_options(const job::ContactLoad& load, const bevel_gear::BevelGear& pinion,
+                                                    const bevel_gear::BevelGear& wheel) {
+  const double m = wheel.parameters().outer_transverse_module_mm, thickest = loaded_bevel::thickest_rim(wheel),
+               rim = load.rim_mm.value_or(std::min(5 * m, thickest));
+  if (!(rim >= 0.5 * m) || !(rim <= thickest))
+    return fail(
+        "rim = {:g} mm is not between half the module, {:g} mm, and {:.4g} mm, which leave the wheel a quarter of "
+        "what is below its root at the small end",
+        rim, 0.5 * m, thickest);
+  const auto plans = under_load::body_plans(load, rim);
+  loaded_bevel::BevelPairOptions options;
+  options.wheel = plans[0], options.pinion = plans[1];
+  options.pinion.bricks.rim_mm = std::min(rim, loaded_bevel::thickest_rim(pinion));
+  options.torque_on_pinion = load.on_pinion;
+  options.edge_radius_mm = load.edge_radius_mm;
+  return options;
+}
+
+}  // namespace
+
+contact::BevelAssembly assembly_of(const contact::Misalignment& moved) {
+  return {moved.angle_rad, moved.offset_mm, moved.axial_mm, moved.gear_axial_mm};
+}
+
+process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(const job::Job& job,
+                                                                 const bevel_gear::BevelGear& pinion,
+                                                                 const bevel_gear::BevelGear& wheel,
+                                                                 const job::ContactSettings& settings) {
+  under_load::LoadedContact found;
+  found.words = under_load::kBevelWords;
+  found.settings = settings.load.value();
+  const job::ContactLoad& load = found.settings;
+  found.rings = static_cast<int>(wheel.halves().size());
+  found.pinion_teeth = pinion.parameters().teeth;
+  found.torque_gear_Nm =
+      load.on_pinion ? load.torque_Nm * wheel.parameters().teeth / pinion.parameters().teeth : load.torque_Nm;
+  found.floating = load.pinion_axial == job::PinionHold::floating;
+  if (found.floating && !wheel.herringbone())
+    return std::vector{
+        process::located(job, "contact.load.pinion_axial",
+                         fail("pinion_axial = \"floating\" needs two halves of opposite hand: nothing else keeps the "
+                              "pinion in its place"))};
+  auto options = pair_options(load, pinion, wheel);
+  if (!options) return std::vector{process::located(job, "contact.load.rim", options.error())};
+  options->moved = assembly_of(settings.moved);
+  found.rim_mm = options->wheel.bricks.rim_mm, found.pinion_rim_mm = options->pinion.bricks.rim_mm;
+  for (const int sigma : {1, -1}) {
+    const auto pair = loaded_bevel::make_loaded_bevel_pair(pinion, wheel, sigma, *options);
+    if (!pair) return std::vector{process::located(job, "gear", pair.error())};
+    const char* wall = sigma > 0 ? "wall L" : "wall U";
+    auto cycle = loaded_bevel::loaded_cycle(*pair, under_load::load_of(found, load.torque_Nm));
+    if (!cycle) {
+      cycle.error().message = fmt::format("{}: {}", wall, cycle.error().message);
+      return std::vector{process::located(job, "contact.load", cycle.error())};
+    }
+    under_load::add_side(found, {sigma, wall, false, std::move(*cycle)}, under_load::is_steel(load));
+  }
+  return found;
+}
+
+}  // namespace toothpath::bevel

@@ -1,0 +1,22 @@
+// A pair of bevel gears under load: both walls over a pitch.
+#pragma once
+
+#include "app/job/job.h"
+#include "app/process/gear_of_job.h"
+#include "app/process/under_load/loaded_contact.h"
+#include "geometry/contact/bevel_contact.h"
+
+namespace toothpath::bevel {
+
+/// Refused, where the key stands: a rim that does not fit the wheel, a pinion that floats without two halves, teeth
+/// that have no bricks, a position where nothing touches or that does not settle.
+/// @param settings  with a load
+[[nodiscard]] process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(const job::Job& job,
+                                                                               const bevel_gear::BevelGear& pinion,
+                                                                               const bevel_gear::BevelGear& wheel,
+                                                                               const job::ContactSettings& settings);
+
+/// Where the pair stands, as the settings say it.
+[[nodiscard]] contact::BevelAssembly assembly_of(const contact::Misalignment& moved);
+
+}  // namespace toothpath::bevel
