@@ -17,7 +17,7 @@ constexpr int kCoarse = 2;       // cells of a side that are one while windows a
 constexpr double kIdle = 1.2;    // approaches: flanks farther apart do not touch when others do
 constexpr double kMargin = 1.3;  // windows reach so far beyond what presses
 constexpr double kLoose = 2.2;   // a window so much wider than what presses is drawn together
-constexpr int kMostFits = 8;     // rounds of fitting the windows
+constexpr int kMostFits = 24;    // rounds of fitting the windows
 
 /// The window of one tooth.
 struct ToothWindow {

@@ -177,6 +177,49 @@ TEST(ContactCommand, UnderLoadInPointsAndAsDecks) {
   EXPECT_NE(file_text(dir / "decks/ring_0_flank_plus.inp").find("*CONTACT PAIR"), std::string::npos);
 }
 
+/// A herringbone bevel pair: both walls, axial forces of both gears, edges with and without a radius, a floating
+/// pinion.
+TEST(ContactCommand, BevelPairUnderLoad) {
+  const TestDir dir;
+  const std::string wheel = kSamples + "/bevel_wheel.toml", out = dir / "out";
+  const auto job = [&](const std::string& load) {
+    return changed_sample(
+        dir, "bevel_pinion.toml", "[machine]",
+        "[contact]\noffset_error = 0.01\n[contact.load]\ntorque = 200\npositions = 1\nrow_teeth = 3\n" + load +
+            "\n\n[machine]");
+  };
+  const auto run = run_program({"contact", job("edge_radius = 0.3"), "--mate", wheel, "--out", out});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"contact.csv", "contact.html", "contact.json", "loaded.csv",
+                                                     "pressure.csv", "transmission.csv"}));
+  EXPECT_NE(run.out.find("under 200 N m on the wheel, pinion held"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("edges rounded by 0.3 mm"), std::string::npos) << run.out;
+  const Json report = Json::parse(file_text(out + "/contact.json"));
+  EXPECT_NEAR(report.at("assembly").at("offset_mm").get<double>(), 0.01, 1e-12) << "the key of [contact]";
+  const Json& loaded = report.at("loaded");
+  ASSERT_EQ(loaded.at("flanks").size(), 2u);
+  EXPECT_EQ(loaded.at("flanks")[0].at("name"), "wall L");
+  for (const Json& flank : loaded.at("flanks")) {
+    EXPECT_EQ(flank.at("model"), "cells");
+    EXPECT_NEAR(flank.at("gear_torque_Nm").at("mean").get<double>(), 200, 1e-7);
+    EXPECT_NEAR(flank.at("pinion_torque_Nm").at("mean").get<double>(), 200 * 18.0 / 37, 5);
+    EXPECT_GT(flank.at("stiffness_N_um").at("least").get<double>(), 20);
+    EXPECT_GT(flank.at("gear_axial_N").at("mean").get<double>(), 100) << "away from the apex";
+    const double line_load = flank.at("end_line_load_N_mm").at("most").get<double>(),
+                 pressure = flank.at("edge_pressure_MPa").at("most").get<double>();
+    EXPECT_EQ(line_load > 0, pressure > 0);
+  }
+  for (const char* words : {"Under load", "Loaded transmission error", "Share of the outer half", "wheel lags"})
+    EXPECT_NE(file_text(out + "/contact.html").find(words), std::string::npos) << words;
+  const auto floating =
+      run_program({"contact", job("pinion_axial = \"floating\""), "--mate", wheel, "--out", dir / "floating"});
+  ASSERT_EQ(floating.exit_code, 0) << floating.err;
+  EXPECT_NE(floating.out.find("edge contact: pressure undefined without edge_radius"), std::string::npos)
+      << floating.out;
+  const Json balanced = Json::parse(file_text(dir / "floating/contact.json")).at("loaded");
+  for (const Json& flank : balanced.at("flanks")) EXPECT_NEAR(flank.at("axial_N").at("most").get<double>(), 0, 1e-2);
+}
+
 /// What loaded contact does not compute is refused where it was asked for.
 TEST(ContactCommand, RefusesLoadsThatItDoesNotCompute) {
   const TestDir dir;
@@ -187,7 +230,14 @@ TEST(ContactCommand, RefusesLoadsThatItDoesNotCompute) {
     EXPECT_EQ(run.exit_code, 3) << words;
     EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
   };
-  refused(kSamples + "/bevel_pinion.toml", "loaded contact of bevel pairs is not computed", {});
+  const std::vector<std::string> mated = {"--mate", kSamples + "/bevel_wheel.toml"};
+  refused(kSamples + "/bevel_pinion.toml", "--ccx needs a face_gear", {"--ccx", dir / "decks"});
+  const auto bevel = [&](const std::string& load) {
+    return changed_sample(dir, "bevel_pinion.toml", "[machine]",
+                          "[contact.load]\ntorque = 1\n" + load + "\n\n[machine]");
+  };
+  refused(bevel("rim = 60"), "rim = 60 mm is not between half the module", mated);
+  refused(bevel("positions = 1"), "the flanks approach by", {mated[0], mated[1], "--torque", "1e6"});
   refused(kSamples + "/offset_shaped.toml", "--ccx is for a pinion of as many teeth as the shaper",
           {"--pinion-teeth", "23", "--positions", "1", "--ccx", dir / "decks"});
   const std::string floating = changed_sample(dir, "offset_shaped.toml", "[machine]",
