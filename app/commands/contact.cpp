@@ -121,7 +121,8 @@ void add_contact(Commands& commands) {
         set.text("--ccx", request.ccx_dir, "with --torque: write decks of CalculiX, a ring and flank each", "DIR");
         set.flag("--optimise", request.optimise,
                  "seek crownings and reliefs that keep the pattern inside over the box of [contact.misalignment]");
-        set.word("--modify", request.modify, "whose flanks --optimise may modify (default both; shaped gears: pinion)",
+        set.word("--modify", request.modify,
+                 "whose flanks --optimise may modify (default both; shaped gears: pinion; bevel gears: their own)",
                  "WHO", process::kModifiable);
         set.text("--write", request.write_file, "with --optimise: the job with what was found, a new file", "JOB.toml");
         set.flag("--as-cut", request.as_cut, "roll the surface that the job cuts, too");

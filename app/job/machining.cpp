@@ -370,25 +370,24 @@ MisalignmentBox read_misalignment(toml::TableReader& table) {
 
 ContactSettings read_contact(toml::TableReader& table, const Job& job) {
   ContactSettings c;
-  c.pinion_teeth = table.optional_integer("pinion_teeth", kPinionTeeth).value_or(0);
+  if (job.face_gear()) c.pinion_teeth = table.optional_integer("pinion_teeth", kPinionTeeth).value_or(0);
+  else if (table.misplaced("pinion_teeth"))
+    table.refuse("pinion_teeth",
+                 "pinion_teeth belongs to face gears; this gear is {}, whose mate has gear.mate_teeth, or the teeth of "
+                 "the job that --mate names",
+                 job.gear_type());
   c.moved.offset_mm = table.number_or("offset_error", kMoved, c.moved.offset_mm);
   c.moved.axial_mm = table.number_or("axial_error", kMoved, c.moved.axial_mm);
   c.moved.angle_rad = radians(table.number_or("angle_error", kAngleError, degrees(c.moved.angle_rad)));
   c.compound_mm = table.number_or("compound", kCompound, c.compound_mm);
   c.moved.gear_axial_mm = table.number_or("gear_axial_error", kMoved, c.moved.gear_axial_mm);
-  if (job.face_gear()) {
-    c.modifications = read_modifications(table, job.directory());
-    if (auto box = table.table("misalignment")) c.box = read_misalignment(*box);
-  } else {
-    if (table.misplaced("modification"))
-      table.refuse("modification",
-                   "modification belongs to the pinions of face gears; this gear is {}, whose mate has a job of its "
-                   "own: [[gear.modification]] there, and --mate",
-                   job.gear_type());
-    if (table.misplaced("misalignment"))
-      table.refuse("misalignment", "misalignment belongs to face gears and their pinions; this gear is {}",
-                   job.gear_type());
-  }
+  if (job.face_gear()) c.modifications = read_modifications(table, job.directory());
+  else if (table.misplaced("modification"))
+    table.refuse("modification",
+                 "modification belongs to the pinions of face gears; this gear is {}, whose mate has a job of its "
+                 "own: [[gear.modification]] there, and --mate",
+                 job.gear_type());
+  if (auto box = table.table("misalignment")) c.box = read_misalignment(*box);
   if (auto load = table.table("load")) c.load = read_contact_load(*load);
   table.finish();
   return c;

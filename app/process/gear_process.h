@@ -114,8 +114,8 @@ struct ContactAsked {
   std::optional<int> positions;                ///< of the loaded pair over a pitch
   std::string ccx_dir;                         ///< where decks of CalculiX go; empty: none
   bool as_cut = false;                         ///< face gears: the surface that the job's operations cut, too
-  bool optimise = false;                       ///< face gears: seek crownings and reliefs for the box of misalignments
-  std::string modify;                          ///< whose flanks they may take: a word of kModifiable; empty: both
+  bool optimise = false;                       ///< seek crownings and reliefs for the box of misalignments
+  std::string modify;                          ///< whose flanks they may take: a word of kModifiable; empty: any
   std::string write_file;                      ///< where the job with what was found goes; empty: nowhere
 };
 /// Whose flanks `contact --optimise` may modify.

@@ -146,14 +146,6 @@ class BevelGearBuilder {
     g.e_h_ = kPi / (2 * p.teeth) + p.backlash_mm / (4 * g.R_e_ * g.sin_delta_);
   }
 
-  /// The face of a half, without its share of the relief groove.
-  [[nodiscard]] modification::Rectangle rectangle(int zone) const {
-    const auto& p = gear_.parameters_;
-    if (p.form == BevelForm::single) return rectangle_of(p, gear_.R_i_, gear_.R_e_);
-    const double w = p.relief_half_width_mm;
-    return zone == 0 ? rectangle_of(p, gear_.R_i_, gear_.R_ref_ - w) : rectangle_of(p, gear_.R_ref_ + w, gear_.R_e_);
-  }
-
   void modifications() {
     const auto& p = gear_.parameters_;
     const int zones = p.form == BevelForm::single ? 1 : 2;
@@ -162,8 +154,9 @@ class BevelGearBuilder {
         refusals_.push_back({fmt::format("modification[{}].zone", k),
                              fail("zone = {} is not below {}, the number of halves", *zone, zones)});
     for (int zone = 0; zone < zones && refusals_.empty(); ++zone)
-      if (rectangle(zone).face() > 0)  // a groove that leaves no face is refused for that
-        if (auto r = refused_modification(p, zone, zones, rectangle(zone))) refusals_.push_back(std::move(*r));
+      if (rectangle_of(gear_, zone).face() > 0)  // a groove that leaves no face is refused for that
+        if (auto r = refused_modification(p, zone, zones, rectangle_of(gear_, zone)))
+          refusals_.push_back(std::move(*r));
   }
 
   void profile() {
@@ -216,7 +209,7 @@ class BevelGearBuilder {
     b.R_from = b.ell_from = from;
     b.R_to = b.ell_to = to;
     const int zone = static_cast<int>(gear_.halves_.size());
-    const modification::Rectangle on = rectangle(zone);
+    const modification::Rectangle on = rectangle_of(gear_, zone);
     BevelTrace<double> trace = gear_.trace(h, cutter_.r_0);
     if (on.face() > 0)
       for (int k = 0; k < 2; ++k) trace.lead[k] = lead_law(gear_.parameters_, k == 0 ? 1 : -1, zone, on, cutter_);

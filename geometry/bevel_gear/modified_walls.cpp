@@ -30,6 +30,13 @@ modification::Rectangle rectangle_of(const BevelGearParameters& p, double from, 
   return {2 * p.addendum_mm, from, to};
 }
 
+modification::Rectangle rectangle_of(const BevelGear& gear, int zone) {
+  const BevelGearParameters& p = gear.parameters();
+  if (p.form == BevelForm::single) return rectangle_of(p, gear.R_i(), gear.R_e());
+  const double w = p.relief_half_width_mm;
+  return zone == 0 ? rectangle_of(p, gear.R_i(), gear.R_ref() - w) : rectangle_of(p, gear.R_ref() + w, gear.R_e());
+}
+
 std::shared_ptr<const ProfileLaw> profile_law(const BevelGearParameters& p) {
   ProfileLaw law;
   const modification::Rectangle on = rectangle_of(p, 0, 1);  // the face does not matter

@@ -23,6 +23,9 @@ namespace toothpath::bevel_gear {
 /// Where modifications of a half are counted: twice the addendum deep, along its face.
 [[nodiscard]] modification::Rectangle rectangle_of(const BevelGearParameters& parameters, double from, double to);
 
+/// Of a half of a gear: its face without its share of the relief groove.
+[[nodiscard]] modification::Rectangle rectangle_of(const BevelGear& gear, int zone);
+
 /// Modifications that do not fit a half, or that one mill on its path does not make.
 [[nodiscard]] std::optional<BevelRefusal> refused_modification(const BevelGearParameters& parameters, int zone,
                                                                int zones, const modification::Rectangle& on);

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geometry/base/angle.h"
+#include "geometry/contact/tooth_contact.h"
 
 namespace toothpath::contact {
 namespace {
@@ -18,7 +19,8 @@ class Roll {
       : pair_(pair), sigma_(sigma), options_(options) {
     tau_ = pair.wheel().pitch();
     step_ = tau_ / options.steps;
-    for (std::size_t h = 0; h < pair.wheel().halves().size(); ++h) patterns_.push_back(grid(static_cast<int>(h)));
+    for (std::size_t h = 0; h < pair.wheel().halves().size(); ++h)
+      patterns_.push_back(wheel_grid(pair, static_cast<int>(h), sigma, options.rows, options.columns));
   }
 
   Result<BevelContact> run() {
@@ -46,23 +48,6 @@ class Roll {
     int half = 0;
     double ell = 0, height = 0;
   };
-
-  BevelPattern grid(int half) const {
-    BevelPattern g;
-    g.half = half;
-    g.rows = options_.rows;
-    g.columns = options_.columns;
-    const auto& h = pair_.wheel().halves()[static_cast<std::size_t>(half)];
-    for (int i = 0; i < g.rows; ++i)
-      for (int j = 0; j < g.columns; ++j) {
-        const double height = pair_.lowest(half) + (pair_.highest() - pair_.lowest(half)) * i / (g.rows - 1);
-        const double ell = h.ell_from + (h.ell_to - h.ell_from) * j / (g.columns - 1);
-        const auto place = pair_.wheel_place(half, sigma_, ell, height);
-        g.places.push_back(place ? *place
-                                 : BevelPlace{ell, height, Vec3::Constant(kNothing), Vec3::Constant(kNothing)});
-      }
-    return g;
-  }
 
   std::optional<double> error(int half, const Vec3& point, double phi_2, bevel_gear::BevelInverse& start) const {
     return pair_.error_at(half, sigma_, point, phi_2, start);
@@ -151,32 +136,46 @@ class Roll {
     return std::isinf(l.error) ? nullptr : &l;
   }
 
+  [[nodiscard]] BevelPosition position(int k, const Least& l, int tooth) const {
+    BevelPosition at;
+    at.phi_2 = k * step_;
+    at.phi_1 = pair_.nominal_turn(at.phi_2) + sigma_ * l.error;
+    at.error_rad = l.error, at.half = l.half, at.tooth = tooth, at.ell = l.ell, at.height = l.height;
+    return at;
+  }
+
   /// All pairs: pair j stands where pair 0 stands j pitches later.
   void cycle(BevelContact& out) {
     const double lever = mean_lever();
     double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0, marking = 0;
     out.least_marking = std::numeric_limits<int>::max();
+    std::vector<int> bears;  // counted from first_
     for (int k = 0; k < options_.steps; ++k) {
-      BevelPosition at;
-      at.error_rad = std::numeric_limits<double>::infinity();
+      const Least* first = nullptr;
+      int tooth = 0;
       const int most = (last_ - first_) / options_.steps + 2;
       for (int j = -most; j <= most; ++j)
-        if (const Least* l = pair_at(k + j * options_.steps); l && l->error < at.error_rad) {
-          at.error_rad = l->error, at.half = l->half, at.tooth = j, at.ell = l->ell, at.height = l->height;
-        }
+        if (const Least* l = pair_at(k + j * options_.steps); l && (!first || l->error < first->error))
+          first = l, tooth = j;
+      BevelPosition at = position(k, first ? *first : Least{}, tooth);
       for (int j = -most; j <= most; ++j)
         if (const Least* l = pair_at(k + j * options_.steps);
             l && (l->error - at.error_rad) * lever <= options_.compound_mm)
           ++at.marking;
-      at.phi_2 = k * step_;
-      at.phi_1 = pair_.nominal_turn(at.phi_2) + sigma_ * at.error_rad;
+      bears.push_back(k + tooth * options_.steps - first_);
       low = std::min(low, at.error_rad), high = std::max(high, at.error_rad);
       sum += at.error_rad, marking += at.marking;
       out.least_marking = std::min(out.least_marking, at.marking);
       out.most_marking = std::max(out.most_marking, at.marking);
       out.cycle.push_back(at);
     }
-    out.error_range_rad = high - low;
+    std::vector<double> alone;
+    for (int k = first_; k <= last_; ++k) {
+      const Least* l = pair_at(k);
+      alone.push_back(l ? l->error : kNothing);
+      if (l) out.pair.push_back(position(k, *l, 0));
+    }
+    out.error_range_rad = with_handovers(alone, bears, high) - low;
     out.error_mean_rad = sum / options_.steps;
     out.error_range_mm = out.error_range_rad * pair_.pinion().R_m() * pair_.pinion().sin_delta();
     out.marking_ratio = marking / options_.steps;
@@ -195,13 +194,18 @@ class Roll {
       for (std::size_t p = 0; p < g.places.size(); ++p) {
         const Meeting& m = meetings_[h][p];
         double least = kNothing;
+        int then = 0;
         for (std::size_t k = 0; k < m.error.size(); ++k) {
           if (std::isnan(m.error[k])) continue;
           const int at = (((m.first + static_cast<int>(k)) % options_.steps) + options_.steps) % options_.steps;
           const double gap = m.error[k] - out.cycle[static_cast<std::size_t>(at)].error_rad;
-          if (!(gap > least)) least = gap;
+          if (!(gap > least)) least = gap, then = m.first + static_cast<int>(k);
         }
-        if (!std::isnan(least)) least = std::max(0.0, least) * pair_.lever(g.places[p], m.at);
+        const bool met = !std::isnan(least);
+        const auto on = met ? pair_.on_pinion(g.places[p].point, then * step_) : bevel_gear::ConePoint{};
+        g.pinion_ell_mm.push_back(met ? on.ell : kNothing);
+        g.pinion_height_mm.push_back(met ? on.height : kNothing);
+        if (met) least = std::max(0.0, least) * pair_.lever(g.places[p], m.at);
         g.gap_mm.push_back(least);
         if (least <= options_.compound_mm) ++marked;
       }
@@ -244,6 +248,22 @@ class Roll {
 };
 
 }  // namespace
+
+BevelPattern wheel_grid(const BevelPair& pair, int half, int sigma, int rows, int columns) {
+  BevelPattern g;
+  g.half = half;
+  g.rows = rows;
+  g.columns = columns;
+  const auto& h = pair.wheel().halves()[static_cast<std::size_t>(half)];
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) {
+      const double height = pair.lowest(half) + (pair.highest() - pair.lowest(half)) * i / (rows - 1);
+      const double ell = h.ell_from + (h.ell_to - h.ell_from) * j / (columns - 1);
+      const auto place = pair.wheel_place(half, sigma, ell, height);
+      g.places.push_back(place ? *place : BevelPlace{ell, height, Vec3::Constant(kNothing), Vec3::Constant(kNothing)});
+    }
+  return g;
+}
 
 Result<BevelContact> bevel_contact(const BevelPair& pair, int sigma, const BevelContactOptions& options) {
   if (options.rows < 3 || options.columns < 3 || options.steps < 4)

@@ -39,6 +39,7 @@ struct PinionChange {
 struct BevelPlace {
   double ell = 0, height = 0;                        ///< generatrix coordinates, mm
   Vec3 point = Vec3::Zero(), normal = Vec3::Zero();  ///< blank frame, space 0; out of the material
+  double beta = 0, p = 0;                            ///< its parameters: along the trace, on the profile of the mill
 };
 
 /// Where the pinion's wall, continued beyond its edges, passes through a point.
@@ -86,6 +87,12 @@ class BevelPair {
 
   /// Moment of the unit normal about the pinion axis, mm: turns of the pinion times this are gaps.
   [[nodiscard]] double lever(const BevelPlace& place, double phi_2) const;
+  /// The same of the pinion's own normal, where its wall is: a turn times this is the distance square to the pinion.
+  [[nodiscard]] double pinion_lever(int half, int sigma, const bevel_gear::BevelInverse& at) const;
+
+  /// Where the pinion's flanks pass a point of the wheel, whatever the pinion's turn: generatrix coordinates of the
+  /// pinion.
+  [[nodiscard]] bevel_gear::ConePoint on_pinion(const Vec3& point, double phi_2) const;
 
   /// A point, and a direction, of the wheel's blank frame in the fixed frame while the wheel stands at phi_2: the
   /// pinion's blank frame at phi_1 = 0, z along its axis, away from its apex.
@@ -132,8 +139,9 @@ struct BevelPattern {
   /// Along the normal at the exact ratio, mean 0 over the wall; > 0: a gap. NaN: the flanks have no common normal here,
   /// because the pinion's flank ends before.
   std::vector<double> mismatch_mm;
-  std::vector<double> gap_mm;  ///< least gap while the pair rolls; NaN: the pinion never comes
-  double marked_share = 0;     ///< part of the places below the compound
+  std::vector<double> gap_mm;                           ///< least gap while the pair rolls; NaN: the pinion never comes
+  std::vector<double> pinion_ell_mm, pinion_height_mm;  ///< place on the pinion at that moment
+  double marked_share = 0;                              ///< part of the places below the compound
 };
 
 /// One position of the mesh cycle.
@@ -148,7 +156,9 @@ struct BevelPosition {
 struct BevelContact {
   int sigma = 1;
   std::vector<BevelPosition> cycle;  ///< one pitch of the wheel
-  double error_range_rad = 0, error_mean_rad = 0;
+  std::vector<BevelPosition> pair;   ///< one pair alone, through all of its mesh and on its edges
+  double error_range_rad = 0;        ///< peak to peak, also where one pair takes over from another between positions
+  double error_mean_rad = 0;
   double error_range_mm = 0;  ///< at the mean pitch circle of the pinion
   double marking_ratio = 0;   ///< mean number of pairs within the compound
   int least_marking = 0, most_marking = 0;
@@ -156,6 +166,10 @@ struct BevelContact {
          mismatch_rms_mm = 0;          ///< over all places of both halves; rms about the mean
   std::vector<BevelPattern> patterns;  ///< one a half
 };
+
+/// The grid of one half of the wheel's wall: lowest to highest, over its face. Places that are not on the wall have a
+/// NaN point.
+[[nodiscard]] BevelPattern wheel_grid(const BevelPair& pair, int half, int sigma, int rows, int columns);
 
 /// Rolls wall sigma of the pair through one pitch. Refused: walls that never meet.
 [[nodiscard]] Result<BevelContact> bevel_contact(const BevelPair& pair, int sigma,

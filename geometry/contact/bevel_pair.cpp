@@ -70,6 +70,10 @@ Vec3 BevelPair::turned_to_pinion(const Vec3& direction, double phi_2) const {
 }
 Vec3 BevelPair::to_pinion(const Vec3& point, double phi_2) const { return turned_to_pinion(point, phi_2) + shift_; }
 
+bevel_gear::ConePoint BevelPair::on_pinion(const Vec3& point, double phi_2) const {
+  return bevel_gear::cone_point(to_pinion(point, phi_2), pinion_->sin_delta(), pinion_->cos_delta());
+}
+
 bool BevelPair::within_edges(const bevel_gear::BevelHalf& half, const bevel_gear::ConePoint& q) const {
   const double edge = kAtEdge * pinion_->R_0();
   return !(q.ell < half.ell_from - edge || q.ell > half.ell_to + edge ||
@@ -93,8 +97,7 @@ std::optional<BevelTouch> BevelPair::touch_of(const bevel_gear::BevelHalf& half,
 std::optional<double> BevelPair::turn_at(int half, int sigma, const Vec3& point, double phi_2,
                                          bevel_gear::BevelInverse& start) const {
   const bevel_gear::BevelHalf& own = pinion_halves_[static_cast<std::size_t>(half)];
-  const bevel_gear::ConePoint q =
-      bevel_gear::cone_point(to_pinion(point, phi_2), pinion_->sin_delta(), pinion_->cos_delta());
+  const bevel_gear::ConePoint q = on_pinion(point, phi_2);
   if (!within_edges(own, q)) return std::nullopt;
   const auto found = touch_of(own, sigma, q, true, start);
   if (!found) return std::nullopt;
@@ -104,8 +107,7 @@ std::optional<double> BevelPair::turn_at(int half, int sigma, const Vec3& point,
 std::optional<BevelTouch> BevelPair::touch(int half, int sigma, const Vec3& point, double phi_2,
                                            bevel_gear::BevelInverse& start) const {
   const bevel_gear::BevelHalf& own = pinion_halves_[static_cast<std::size_t>(half)];
-  const bevel_gear::ConePoint q =
-      bevel_gear::cone_point(to_pinion(point, phi_2), pinion_->sin_delta(), pinion_->cos_delta());
+  const bevel_gear::ConePoint q = on_pinion(point, phi_2);
   return touch_of(own, sigma, q, within_edges(own, q), start);
 }
 
@@ -146,12 +148,17 @@ std::optional<BevelPlace> BevelPair::wheel_place(int half, int sigma, double ell
   const auto found = bevel_gear::bevel_inverse(wall, ell, height);
   if (!found) return std::nullopt;
   const auto f = wall.point(found->beta, found->p);
-  return BevelPlace{ell, height, f.p, f.n};
+  return BevelPlace{ell, height, f.p, f.n, found->beta, found->p};
 }
 
 double BevelPair::lever(const BevelPlace& place, double phi_2) const {
   const Vec3 r = to_pinion(place.point, phi_2), n = turned_to_pinion(place.normal, phi_2);
   return std::abs(r.x() * n.y() - r.y() * n.x());
+}
+
+double BevelPair::pinion_lever(int half, int sigma, const bevel_gear::BevelInverse& at) const {
+  const auto f = pinion_halves_[static_cast<std::size_t>(half)].wall(sigma).point(at.beta, at.p);
+  return std::abs(f.p.x() * f.n.y() - f.p.y() * f.n.x());
 }
 
 double BevelPair::lowest(int half) const {

@@ -13,18 +13,26 @@
 
 namespace toothpath::contact {
 
-/// One flank; all lists as its grid. NaN: the flanks have no common normal there, the pinion's involute ends before.
+/// One flank; all lists as its grid. NaN: the flanks have no common normal there, the pinion's flank ends before.
 struct EaseOffMap {
-  std::vector<double> gap_mm;   ///< normal to the flank; the least of all members of a side is 0
-  std::vector<double> phi_2;    ///< turn of the gear at which tooth 0 is nearest there, rad
+  EaseOffMap() = default;
+  explicit EaseOffMap(std::size_t places);  ///< without a common normal anywhere; no levers
+  std::vector<double> gap_mm;               ///< normal to the flank; the least of all members of a side is 0
+  std::vector<double> phi_2;                ///< turn of the gear at which tooth 0 is nearest there, rad
   std::vector<double> bend_mm;  ///< second derivative of the distance over the gear's turn there, mm/rad^2, > 0
-  std::vector<double> pinion_radius_mm, pinion_Z_mm;  ///< the mated place of the plain pinion
+  /// The mated place of the pinion. Of the plain pinion of a face gear its radius and where it lies along the axis, of
+  /// a bevel pinion height and cone distance.
+  std::vector<double> pinion_across_mm, pinion_along_mm;
+  /// Distance per turn of the pinion, mm; empty: the same everywhere, and turns are counted as distances.
+  std::vector<double> lever_mm;
+  [[nodiscard]] double lever(std::size_t place) const { return lever_mm.empty() ? 1 : lever_mm[place]; }
 };
 
 struct EaseOff {
   std::vector<EaseOffMap> maps;  ///< one a member
   /// What was taken off all distances: with the turn at which the flanks first touch, the distance there. mm
   double shift_mm = 0;
+  double shift = 0;  ///< the same as a turn of the pinion, rad; where the maps have no levers as the distance
   /// A place of one of the maps.
   struct Place {
     std::size_t member = 0, index = 0;
@@ -33,6 +41,10 @@ struct EaseOff {
   Place least, greatest;
   std::size_t places = 0;  ///< that have a common normal, in all maps
 };
+
+/// Turns the pinions of all maps of a side together to where the first place touches. Refused: no place with a common
+/// normal. @param maps  distances at the exact ratio
+[[nodiscard]] Result<EaseOff> brought_to_touch(std::vector<EaseOffMap> maps);
 
 /// Of members of one side of one gear. Error: below 1e-9 mm, and the square of the flanks' slopes against each other
 /// times the gap: 1e-4 of it on usual reliefs. Refused: no place with a common normal.

@@ -4,9 +4,11 @@
 // Removals add to the ease-off, of gear and pinion alike, so a candidate costs a sum of maps and no rolling: at a turn
 // of the gear a place stands ease-off + bend/2 (turn - its turn)^2 off its pinion, and the least over all places, teeth
 // and rings is the motion curve. What is found is a candidate only; rolling it is the proof. Derivation:
-// docs/ease_off.md 4.
+// docs/ease_off.md 4. Which gears they are the search does not know: a model is made of a face gear here, of a bevel
+// pair in bevel_search_model.h.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "geometry/contact/pattern_place.h"
@@ -21,6 +23,10 @@ struct SearchedModification {
   bool both_ways = false;          ///< amounts below 0, too
   std::vector<double> lengths_mm;  ///< of reliefs: one of these
   double largest_mm = 1e300;       ///< of its amount, where that is less than that of the search
+  /// Of one side of the teeth alone, +1 or -1; 0: of the sides that are searched, alike.
+  int side = 0;
+  /// The search also starts at several times the compound: of flanks that are that far from conjugate.
+  bool from_far = false;
 };
 
 struct SearchOptions {
@@ -31,15 +37,48 @@ struct SearchOptions {
   int steps = 48;               ///< turns a pitch
 };
 
-/// Ease-off of one misalignment on a grid of its own, with what each modification adds.
+/// Ease-off of one flank on a grid, with what each modification takes; lists column by column, rows rising.
+struct SearchFlank {
+  int rows = 0, columns = 0;
+  std::vector<double> gap, phi, bend;  ///< NaN: no common normal. Gaps and bends as motion: divided by `per_motion`
+  std::vector<double> per_motion;      ///< distance per unit of motion; empty: 1 everywhere
+  std::vector<Edges> edges;            ///< in the margin
+  /// What a mm of an amount takes from every place, as motion: with the turn at which the place is nearest, and how
+  /// that changes as the mated place moves on over the gear's turn; slope and bend empty where it stays.
+  struct Taken {
+    std::vector<double> value, slope, bend;
+  };
+  std::vector<std::vector<Taken>> up,
+      down;                      ///< of modification, length, either way; empty where it meets another flank
+  int reach = 2;                 ///< rows either way of the nearest one that may touch
+  std::vector<int> nearest_row;  ///< of turn k, column c: [k * columns + c]; -1: none. Filled in by the model
+
+  /// From a map. @param edges  of its places, in the map's order
+  SearchFlank(int rows_of_map, int columns_of_map, const EaseOffMap& map, const std::vector<Edges>& edges_of_map,
+              double motion_lever);
+  /// Removal along the normal by one modification [mm] at every place of the map, row by row, on gear or pinion; `when`
+  /// -1, 0, 1: a step of the gear's turn before the place is nearest, then, and after.
+  using Removal = std::function<std::vector<double>(const modification::Modification&, bool on_pinion, int when)>;
+  /// Adds what each of `searched` takes. @param step  rad; 0: mated places are taken to stay
+  void add_removals(const std::vector<SearchedModification>& searched, int side, double step, const Removal& removal);
+  [[nodiscard]] double distance_per_motion(std::size_t place) const {
+    return per_motion.empty() ? 1 : per_motion[place];
+  }
+};
+
+/// Ease-off of one misalignment, with what each modification adds.
 class SearchModel {
  public:
-  /// Ease-off as the pair stands, modifications of the drawing and all. Refused: as exact_flank and ease_off.
+  /// Of a face gear: ease-off as the pair stands, modifications of the drawing and all. Refused: as exact_flank and
+  /// ease_off.
   [[nodiscard]] static Result<SearchModel> make(const face_gear::FaceGear& gear, int side, int pinion_teeth,
                                                 const std::vector<modification::Modification>& on_pinion,
                                                 const Misalignment& moved,
                                                 const std::vector<SearchedModification>& searched,
                                                 const SearchOptions& options);
+  /// Of the flanks of one side of a gear with this pitch [rad]; at least one place has a common normal.
+  SearchModel(std::vector<SearchFlank> flanks, double pitch, int steps);
+
   struct Judged {
     double error_mm = 0;       ///< peak to peak of the motion curve, as a distance between the flanks
     double margin_gap_mm = 0;  ///< least gap in the margin of any edge
@@ -49,23 +88,27 @@ class SearchModel {
   [[nodiscard]] Judged judge(const std::vector<double>& amounts_mm, const std::vector<int>& lengths) const;
 
  private:
-  struct Ring {
-    int rows = 0, columns = 0;
-    std::vector<double> gap, phi, bend;  ///< column by column, rows rising; NaN: no common normal
-    std::vector<std::uint8_t> edges;
-    std::vector<std::vector<std::vector<double>>> up, down;  ///< of modification, length: per mm of amount, either way
-    std::vector<int> nearest_row;                            ///< of turn k, column c: [k * columns + c]; -1: none
+  void place_turns(SearchFlank& flank) const;
+  /// A flank with what a candidate takes.
+  struct Changed {
+    std::vector<double> gap;
+    std::vector<double> phi, bend;  ///< empty: those of the flank
   };
-  /// Turns and what each modification takes, of one member.
-  [[nodiscard]] static Ring ring_of(const face_gear::FaceGearRing& ring, const ContactMember& member,
-                                    const EaseOffMap& map, const std::vector<SearchedModification>& searched,
-                                    double margin);
-  void place_turns(Ring& ring) const;
-  [[nodiscard]] double motion(const Ring& ring, const std::vector<double>& gap, int k) const;
+  [[nodiscard]] static Changed changed(const SearchFlank& flank, const std::vector<double>& amounts_mm,
+                                       const std::vector<int>& lengths);
+  [[nodiscard]] double motion(const SearchFlank& flank, const Changed& changed, int k) const;
 
-  std::vector<Ring> rings_;
+  std::vector<SearchFlank> flanks_;
   double start_ = 0, step_ = 0;
   int turns_ = 0, steps_ = 0;
+};
+
+/// The models of one side of the teeth, a misalignment each, and what its margins shall keep: more than the compound
+/// where the model is not trusted.
+struct SearchedSide {
+  int side = 1;
+  std::vector<SearchModel> models;
+  double wanted_gap_mm = 0;
 };
 
 struct SearchResult {
@@ -74,20 +117,29 @@ struct SearchResult {
   bool inside = false;       ///< the pattern keeps off all edges in every model
   double error_mm = 0;       ///< the greatest of all models
   double margin_gap_mm = 0;  ///< the least of all models
-  std::size_t limiting = 0;  ///< the model that has it
+  std::size_t limiting = 0;  ///< the model that has it, of its side
   Edge nearest = Edge::inner_end;
   double score = 0;  ///< what the search made least; of the same models and gap only
   long judged = 0;   ///< candidates
 };
-/// The best over all models of one side: inside first, then the least error. From the best of a coarse lattice, steps
-/// to ever smaller ones. The same on any number of threads.
-/// @param wanted_gap_mm  that the margins shall keep; above the compound where the model is not trusted
+/// The best over all models of all sides: inside first, then the least error of every side. From the best of a coarse
+/// lattice, steps to ever smaller ones. The same on any number of threads.
+/// @param sides  that share a searched modification; what belongs to one of them is sought for it alone
 /// @param known  the only start, found for another side; null: the lattice
-[[nodiscard]] SearchResult search_modifications(const std::vector<SearchModel>& models,
-                                                const std::vector<SearchedModification>& searched, double wanted_gap_mm,
+[[nodiscard]] SearchResult search_modifications(const std::vector<SearchedSide>& sides,
+                                                const std::vector<SearchedModification>& searched,
                                                 const SearchOptions& options, const SearchResult* known = nullptr);
 
-/// The modification that amount and length of a searched one stand for, on the flanks of one side.
+/// The same of one side alone.
+[[nodiscard]] inline SearchResult search_modifications(std::vector<SearchModel> models,
+                                                       const std::vector<SearchedModification>& searched,
+                                                       double wanted_gap_mm, const SearchOptions& options) {
+  std::vector<SearchedSide> sides;
+  sides.push_back({1, std::move(models), wanted_gap_mm});
+  return search_modifications(sides, searched, options);
+}
+
+/// The modification that amount and length of a searched one stand for, on the flanks of one side; 0: of both.
 [[nodiscard]] modification::Modification modification_of(const SearchedModification& searched, double amount_mm,
                                                          int length, int side);
 

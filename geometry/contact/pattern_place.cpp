@@ -6,10 +6,6 @@
 namespace toothpath::contact {
 namespace {
 
-constexpr double kUnmet = 1e300;
-
-unsigned bit(Edge edge) { return 1u << static_cast<unsigned>(edge); }
-
 /// Along a line of the grid where the gap crosses the compound, beside the marked place `in`; in places.
 double crossing(double in, double gap_in, double out, double gap_out, double compound) {
   if (gap_out >= 1e100 || gap_out <= gap_in) return in;
@@ -30,52 +26,73 @@ const char* to_string(Edge edge) {
   return "";
 }
 
-unsigned edges_at(const ContactMember& member, const EaseOffMap& map, int row, int column, double margin,
-                  double pinion_radius_mm) {
-  const ContactFlank& f = member.flank;
-  const Pinion<double>& pinion = member.pinion;
-  const double u = double(row) / (f.rows - 1), v = double(column) / (f.columns - 1),
-               middle = (pinion.r_b + pinion.r_a) / 2;
+Edges own_edges(int rows, int columns, int row, int column, double margin) {
+  const double u = double(row) / (rows - 1), v = double(column) / (columns - 1);
   unsigned edges = 0;
   if (column == 0 || v < margin) edges |= bit(Edge::inner_end);
-  if (column == f.columns - 1 || v > 1 - margin) edges |= bit(Edge::outer_end);
+  if (column == columns - 1 || v > 1 - margin) edges |= bit(Edge::outer_end);
   if (row == 0 || u < margin) edges |= bit(Edge::fillet_line);
-  if (row == f.rows - 1 || u > 1 - margin) edges |= bit(Edge::tip);
-  const auto end_near = [&](double radius) { return bit(radius > middle ? Edge::pinion_tip : Edge::pinion_root); };
-  const double radius = map.pinion_radius_mm[f.index(row, column)];
-  if (std::isnan(radius)) return edges | end_near(pinion_radius_mm);
-  if (pinion.r_a - radius < margin * 2 * (pinion.r_a - pinion.r_p)) edges |= bit(Edge::pinion_tip);
+  if (row == rows - 1 || u > 1 - margin) edges |= bit(Edge::tip);
+  return static_cast<Edges>(edges);
+}
+
+bool beside_the_end(const EaseOffMap& map, int rows, int columns, int row, int column) {
   for (const auto& [r, c] : {std::pair(row - 1, column), {row + 1, column}, {row, column - 1}, {row, column + 1}})
-    if (r >= 0 && r < f.rows && c >= 0 && c < f.columns && std::isnan(map.pinion_radius_mm[f.index(r, c)]))
-      edges |= end_near(radius);
-  return edges;
+    if (r >= 0 && r < rows && c >= 0 && c < columns &&
+        std::isnan(
+            map.gap_mm[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(c)]))
+      return true;
+  return false;
+}
+
+Edges edges_at(const ContactMember& member, const EaseOffMap& map, int row, int column, double margin,
+               double pinion_radius_mm) {
+  const ContactFlank& f = member.flank;
+  const Pinion<double>& pinion = member.pinion;
+  const double middle = (pinion.r_b + pinion.r_a) / 2;
+  unsigned edges = own_edges(f.rows, f.columns, row, column, margin);
+  const auto end_near = [&](double radius) { return bit(radius > middle ? Edge::pinion_tip : Edge::pinion_root); };
+  const double radius = map.pinion_across_mm[f.index(row, column)];
+  if (std::isnan(radius)) return static_cast<Edges>(edges | end_near(pinion_radius_mm));
+  if (pinion.r_a - radius < margin * 2 * (pinion.r_a - pinion.r_p)) edges |= bit(Edge::pinion_tip);
+  if (beside_the_end(map, f.rows, f.columns, row, column)) edges |= end_near(radius);
+  return static_cast<Edges>(edges);
 }
 
 PatternPlace pattern_place(const ContactMember& member, const EaseOffMap& map, const FlankPattern& pattern,
                            double compound_mm, double margin) {
   const ContactFlank& f = member.flank;
+  RolledGrid rolled{f.rows, f.columns, f.points, pattern.gap_mm, {}};
+  for (int r = 0; r < f.rows; ++r)
+    for (int c = 0; c < f.columns; ++c)
+      rolled.edges.push_back(edges_at(member, map, r, c, margin, pattern.pinion_radius_mm[f.index(r, c)]));
+  return pattern_place(rolled, compound_mm);
+}
+
+PatternPlace pattern_place(const RolledGrid& f, double compound_mm) {
   PatternPlace place;
   place.gap_mm.fill(kUnmet);
   place.low = place.inner = kUnmet;
   place.high = place.outer = -kUnmet;
   double marked = 0;
-  const auto gap_at = [&](int r, int c) { return pattern.gap_mm[f.index(r, c)]; };
+  const auto index = [&](int r, int c) {
+    return static_cast<std::size_t>(r) * static_cast<std::size_t>(f.columns) + static_cast<std::size_t>(c);
+  };
+  const auto gap_at = [&](int r, int c) { return f.gap_mm[index(r, c)]; };
   for (int r = 0; r < f.rows; ++r)
     for (int c = 0; c < f.columns; ++c) {
-      const auto k = f.index(r, c);
       const double gap = gap_at(r, c);
       if (gap > 1e100) continue;
-      const unsigned edges = edges_at(member, map, r, c, margin, pattern.pinion_radius_mm[k]);
       for (int e = 0; e < kEdges; ++e)
-        if ((edges >> e & 1u) != 0) {
+        if ((f.edges[index(r, c)] >> e & 1u) != 0) {
           double& least = place.gap_mm[static_cast<std::size_t>(e)];
           least = std::min(least, gap);
         }
       if (gap > compound_mm) continue;
       const int low = std::max(0, r - 1), high = std::min(f.rows - 1, r + 1), in = std::max(0, c - 1),
                 out = std::min(f.columns - 1, c + 1);
-      const double area = (f.points[f.index(r, out)] - f.points[f.index(r, in)])
-                              .cross(f.points[f.index(high, c)] - f.points[f.index(low, c)])
+      const double area = (f.points[index(r, out)] - f.points[index(r, in)])
+                              .cross(f.points[index(high, c)] - f.points[index(low, c)])
                               .norm() /
                           ((high - low) * (out - in));
       marked += area;
@@ -98,6 +115,24 @@ PatternPlace pattern_place(const ContactMember& member, const EaseOffMap& map, c
   return place;
 }
 
+MisalignedContact MisalignedContact::at(const Misalignment& moved) {
+  MisalignedContact contact;
+  contact.moved = moved;
+  contact.margin_gap_mm = kUnmet;
+  return contact;
+}
+
+void MisalignedContact::add_ring(int zone, PatternPlace edges, PatternPlace margin) {
+  at_edges.push_back(edges);
+  in_margin.push_back(margin);
+  for (int e = 0; e < kEdges; ++e)
+    if (const double gap = margin.gap_mm[static_cast<std::size_t>(e)]; gap < margin_gap_mm) {
+      margin_gap_mm = gap;
+      nearest = Edge(e);
+      nearest_zone = zone;
+    }
+}
+
 Result<MisalignedContact> misaligned_contact(const PairSide& pair, const Misalignment& moved,
                                              const RollOptions& options, double margin) {
   std::vector<ContactMember> members;
@@ -107,23 +142,14 @@ Result<MisalignedContact> misaligned_contact(const PairSide& pair, const Misalig
   if (!rolled) return rolled.error();
   const auto map = ease_off(members);
   if (!map) return map.error();
-  MisalignedContact found;
-  found.moved = moved;
+  MisalignedContact found = MisalignedContact::at(moved);
   found.error_mean_rad = rolled->error_mean_rad;
   found.error_range_rad = rolled->error_range_rad;
-  found.margin_gap_mm = kUnmet;
   for (std::size_t m = 0; m < members.size(); ++m) {
     const auto place_with = [&](double width) {
       return pattern_place(members[m], map->maps[m], rolled->patterns[m], options.compound_mm, width);
     };
-    found.at_edges.push_back(place_with(0));
-    found.in_margin.push_back(place_with(margin));
-    for (int e = 0; e < kEdges; ++e)
-      if (const double gap = found.in_margin.back().gap_mm[static_cast<std::size_t>(e)]; gap < found.margin_gap_mm) {
-        found.margin_gap_mm = gap;
-        found.nearest = Edge(e);
-        found.nearest_zone = members[m].flank.zone;
-      }
+    found.add_ring(members[m].flank.zone, place_with(0), place_with(margin));
   }
   return found;
 }

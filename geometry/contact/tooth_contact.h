@@ -7,6 +7,7 @@
 // surfaces with their deviations is found the same way. Derivation: docs/contact.md.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -133,6 +134,22 @@ struct RollResult {
   const double before = b_0 - a_0, after = b_1 - a_1;
   if (!(before * after < 0)) return std::nullopt;
   return a_0 + (a_1 - a_0) * before / (before - after);
+}
+
+/// Highest value of a motion curve, also where one pair takes over between two positions. Of flanks that lag where the
+/// curve is high: of all pairs the lowest bears.
+/// @param pair  of one pair alone, position by position; where it does not touch 1e300, or NaN: no hand-over there
+/// @param bears  a position of one pitch each: which position of `pair` bears then  @param highest  at the positions
+[[nodiscard]] inline double with_handovers(const std::vector<double>& pair, const std::vector<int>& bears,
+                                           double highest) {
+  const int steps = static_cast<int>(bears.size()), turns = static_cast<int>(pair.size());
+  const auto at = [&](int k) { return pair[static_cast<std::size_t>(k)]; };
+  for (int n = 0; n < steps; ++n) {
+    const int a = bears[static_cast<std::size_t>(n)], b = bears[static_cast<std::size_t>((n + 1) % steps)];
+    if (a + 1 == b || a + 1 >= turns || b >= turns || b < 1) continue;
+    if (const auto over = handover(at(a), at(a + 1), at(b - 1), at(b))) highest = std::max(highest, *over);
+  }
+  return highest;
 }
 
 /// Rolls the members (same side, same gear) through one pitch. Refused: no position in which they meet.

@@ -7,11 +7,10 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/contact/nearest_turn.h"
 #include "geometry/contact/tooth_contact.h"
 
 namespace toothpath::contact {
-
-inline constexpr double kNever = -1e300;  ///< turn of a place that the pinion's involute does not reach
 
 /// A turn about the gear's axis; sine and cosine once for many places.
 struct GearTurn {

@@ -161,12 +161,6 @@ TEST(ContactOptimise, Refusals) {
   refused(2, "exists already, and is not replaced", {boxed, "--optimise", "--write", there});
   refused(2, "--compound and --write contradict each other",
           {boxed, "--optimise", "--compound", "5", "--write", dir / "new.toml"});
-  refused(3, "--optimise needs a face_gear", {kSamples + "/bevel_pinion.toml", "--optimise"});
-  refused(3, "misalignment belongs to face gears", {[&] {
-            const std::string path = dir / "bevel.toml";
-            write_file(path, file_text(kSamples + "/bevel_pinion.toml") + "\n[contact.misalignment]\noffset = 0.01\n");
-            return path;
-          }()});
   EXPECT_EQ(file_text(there), "something");
 }
 

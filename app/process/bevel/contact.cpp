@@ -7,6 +7,7 @@
 
 #include "app/job/file.h"
 #include "app/process/bevel/loaded_contact.h"
+#include "app/process/bevel/pair_ease_off.h"
 #include "app/process/under_load/loaded_page.h"
 #include "app/process/under_load/settings.h"
 #include "app/report/page/study_page.h"
@@ -27,6 +28,7 @@ struct PairAnalysis {
   std::vector<contact::BevelContact> walls;  ///< L, U
   std::vector<contact::MismatchChange> changes;
   std::optional<under_load::LoadedContact> loaded;  ///< where the settings have a load
+  PairEaseOff ease_off;
 };
 
 constexpr std::array<const char*, 2> kWall = {"L", "U"};
@@ -164,6 +166,7 @@ std::string page_of(const PairAnalysis& a) {
     page.tables.push_back(under_load::loaded_table(*a.loaded));
     for (auto& chart : under_load::loaded_charts(*a.loaded)) page.charts.push_back(std::move(chart));
   }
+  add_to_page(page, a.ease_off);
   return study_page_html(page);
 }
 
@@ -215,6 +218,7 @@ std::string json_of(const PairAnalysis& a) {
                                    {"pairs_least", c.least_marking},
                                    {"pairs_most", c.most_marking}};
     for (const auto& g : c.patterns) wall["marked_share"].push_back(g.marked_share);
+    add_wall(wall, a.ease_off, w);
     json["walls"].push_back(wall);
   }
   for (const auto& c : a.changes)
@@ -224,6 +228,7 @@ std::string json_of(const PairAnalysis& a) {
                                {"rms_before_um", c.rms_before_mm * 1000},
                                {"rms_after_um", c.rms_after_mm * 1000},
                                {"measured", c.measured}});
+  ease_off::add_misaligned(json, a.ease_off.misaligned);
   json["finding"] = finding(a);
   if (a.loaded) json["loaded"] = under_load::loaded_json(*a.loaded);
   return json.dump(1) + "\n";
@@ -265,12 +270,12 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   a.pinion_teeth = pinion.parameters().teeth;
   a.wheel_teeth = wheel.parameters().teeth;
   const job::ContactSettings settings = under_load::contact_settings(job, asked);
-  a.assembly = assembly_of(settings.moved);
+  a.assembly = contact::assembly_of(settings.moved);
   a.compound_mm = settings.compound_mm;
   const auto pair = contact::BevelPair::make(pinion, wheel, a.assembly);
   if (!pair) return std::vector{process::located(job, "gear", pair.error())};
-  contact::BevelContactOptions options;
-  options.compound_mm = a.compound_mm;
+  // Two rows and columns lie in a margin of 5 %.
+  const contact::BevelContactOptions options{25, 25, 32, a.compound_mm};
   for (const int sigma : {1, -1}) {
     auto contact = clock.run("contact", [&] { return contact::bevel_contact(*pair, sigma, options); });
     if (!contact) return std::vector{process::located(job, "gear", contact.error())};
@@ -287,12 +292,21 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
     a.loaded = std::move(loaded).value();
   }
 
+  BevelPairAsked searched{&job, &gear, &mate, asked.other_job, settings, asked.modify, options};
+  if (searched.modify.empty()) searched.modify = searched.own();
+  auto eased = analyse_ease_off(searched, *pair, a.walls, asked, clock);
+  if (auto* errors = eased.refused()) return std::move(*errors);
+  a.ease_off = std::move(eased).value();
+
   process::ContactFound found;
+  found.missed = a.ease_off.misaligned.missed();
+  found.job_text = a.ease_off.misaligned.job_text;
   found.json = json_of(a);
-  found.summary =
-      fmt::format("{}: pinion {} teeth, wheel {} teeth\n{}\n{}\n{}\n", a.name, a.pinion_teeth, a.wheel_teeth,
-                  page::table_text(wall_table(a)), finding(a), page::table_text(change_table(a)));
+  found.summary = fmt::format("{}: pinion {} teeth, wheel {} teeth\n{}\n{}\n{}\n{}", a.name, a.pinion_teeth,
+                              a.wheel_teeth, page::table_text(wall_table(a)), finding(a),
+                              page::table_text(change_table(a)), ease_off_summary(a.ease_off));
   found.files = {{"contact.csv", places_csv(a)},
+                 {"ease_off.csv", ease_off_csv(a.ease_off)},
                  {"transmission.csv", transmission_csv(a)},
                  {"contact.json", found.json},
                  {"contact.html", page_of(a)}};

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/job/file.h"
+#include "geometry/contact/bevel_pattern_place.h"
 #include "geometry/loaded_bevel/bevel_body.h"
 #include "geometry/loaded_bevel/loaded_bevel_pair.h"
 
@@ -30,10 +31,6 @@ Result<loaded_bevel::BevelPairOptions> pair_options(const job::ContactLoad& load
 
 }  // namespace
 
-contact::BevelAssembly assembly_of(const contact::Misalignment& moved) {
-  return {moved.angle_rad, moved.offset_mm, moved.axial_mm, moved.gear_axial_mm};
-}
-
 process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(const job::Job& job,
                                                                  const bevel_gear::BevelGear& pinion,
                                                                  const bevel_gear::BevelGear& wheel,
@@ -54,7 +51,7 @@ process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(const job::Job&
                               "pinion in its place"))};
   auto options = pair_options(load, pinion, wheel);
   if (!options) return std::vector{process::located(job, "contact.load.rim", options.error())};
-  options->moved = assembly_of(settings.moved);
+  options->moved = contact::assembly_of(settings.moved);
   found.rim_mm = options->wheel.bricks.rim_mm, found.pinion_rim_mm = options->pinion.bricks.rim_mm;
   for (const int sigma : {1, -1}) {
     const auto pair = loaded_bevel::make_loaded_bevel_pair(pinion, wheel, sigma, *options);

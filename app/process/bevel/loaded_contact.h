@@ -4,7 +4,7 @@
 #include "app/job/job.h"
 #include "app/process/gear_of_job.h"
 #include "app/process/under_load/loaded_contact.h"
-#include "geometry/contact/bevel_contact.h"
+#include "geometry/bevel_gear/gear.h"
 
 namespace toothpath::bevel {
 
@@ -15,8 +15,5 @@ namespace toothpath::bevel {
                                                                                const bevel_gear::BevelGear& pinion,
                                                                                const bevel_gear::BevelGear& wheel,
                                                                                const job::ContactSettings& settings);
-
-/// Where the pair stands, as the settings say it.
-[[nodiscard]] contact::BevelAssembly assembly_of(const contact::Misalignment& moved);
 
 }  // namespace toothpath::bevel

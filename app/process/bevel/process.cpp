@@ -214,7 +214,6 @@ class BevelProcess final : public process::GearProcess {
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
     for (const auto& [given, option] : {std::pair(asked.pinion_teeth.has_value(), "--pinion-teeth"),
                                         {asked.as_cut, "--as-cut"},
-                                        {asked.optimise, "--optimise"},
                                         {!asked.ccx_dir.empty(), "--ccx"}})
       if (given)
         return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs a face_gear", job_.gear_type(), option);

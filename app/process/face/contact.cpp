@@ -1,10 +1,10 @@
 #include "app/process/face/contact.h"
 
 #include "app/process/face/contact_figures.h"
+#include "app/process/face/searched_pair.h"
 #include "app/process/under_load/loaded_page.h"
 #include "app/process/under_load/settings.h"
 #include "app/report/page/study_page.h"
-#include "geometry/base/angle.h"
 
 namespace toothpath::face {
 namespace {
@@ -38,14 +38,7 @@ std::string contact_page(const ContactAnalysis& a) {
     for (auto& figure : ease_off::map_figures(ease_off_of(side), name_of(a, side)))
       page.figures.push_back(std::move(figure));
   page.tables = {contact_table(a)};
-  if (a.misalignments) {
-    page.tables.push_back(ease_off::table_page(*a.misalignments, "Misaligned"));
-    if (a.misalignments->rows.size() > 1) page.charts.push_back(ease_off::centre_chart(*a.misalignments));
-  }
-  if (a.optimised) {
-    page.introduction.push_back("Optimised: " + a.optimised->finding + ".");
-    page.tables.push_back(ease_off::table_page(a.optimised->table, "Misaligned, with what was found"));
-  }
+  ease_off::add_to_page(page, a.misaligned);
   if (a.loaded) {
     page.introduction.push_back(under_load::loaded_introduction(*a.loaded));
     for (const auto& note : a.loaded->notes) page.introduction.push_back(note);
@@ -56,38 +49,16 @@ std::string contact_page(const ContactAnalysis& a) {
 }
 
 /// The table of misalignments, and what keeps the pattern inside over its box, as far as that is asked for.
-process::ValueOrErrors<Ok> misalign(const job::Job& job, const face_gear::FaceGear& gear,
-                                    const process::ContactAsked& asked, ContactAnalysis& a, app::StageClock& clock) {
-  if (!a.settings.box) {
-    if (!asked.optimise) return Ok{};
-    return std::vector{fail_at(job.where("contact"),
-                               "--optimise needs a box of misalignments: [contact.misalignment] "
-                               "with offset, angle, pinion_axial or gear_axial")};
-  }
+process::ValueOrErrors<ease_off::Misaligned> misalign(const job::Job& job, const face_gear::FaceGear& gear,
+                                                      const process::ContactAsked& asked, const ContactAnalysis& a,
+                                                      app::StageClock& clock) {
   const ContactGrid grid;
   contact::RollOptions roll;
   roll.steps = grid.steps;
   roll.compound_mm = a.settings.compound_mm;
-  ease_off::PairSides pair;
-  for (const std::size_t s : {0u, 1u}) {
-    pair[s] = {&gear, {}, a.pinion_teeth, a.settings.modifications};
-    for (const auto& member : a.sides[s].members) pair[s].flanks.push_back(member.flank);
-  }
-  const job::MisalignmentBox& box = *a.settings.box;
-  auto rows = clock.run("misalignments", [&] {
-    return ease_off::roll_rows(pair, ease_off::single_misalignments(a.settings.moved, box.most), roll, box.margin);
-  });
-  if (!rows) return std::vector{process::located(job, "contact.misalignment", rows.error())};
-  a.misalignments = {box.most, box.margin, roll.compound_mm, a.pitch_radius_mm, std::move(*rows)};
-  if (!asked.optimise) return Ok{};
   const std::string modify = asked.modify.empty() ? job.shaping ? "pinion" : "both" : asked.modify;
-  auto found = clock.run("optimise", [&] {
-    return ease_off::optimise(
-        {&job, a.pinion_teeth, a.settings, modify, roll, grid.rows, grid.columns, a.pitch_radius_mm});
-  });
-  if (auto* errors = found.refused()) return std::move(*errors);
-  a.optimised = std::move(found).value();
-  return Ok{};
+  const auto pair = searched_pair({&job, &gear, a.pinion_teeth, a.settings, modify, roll, grid.rows, grid.columns});
+  return ease_off::misalign(*pair, job, a.settings, asked, modify, clock);
 }
 
 }  // namespace
@@ -106,14 +77,11 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   if (!asked.ccx_dir.empty() && !analysis.loaded)
     return std::vector{fail_at(job.where(""), "--ccx needs a load: --torque or [contact.load]")};
   process::ContactFound found;
-  if (auto refused = misalign(job, gear, asked, analysis, clock); auto* errors = refused.refused())
-    return std::move(*errors);
-  found.missed = analysis.optimised && !analysis.optimised->found;
-  if (analysis.optimised && !found.missed && !asked.write_file.empty()) {
-    auto text = ease_off::job_with_keys(job, *analysis.optimised, asked.write_file);
-    if (!text) return std::vector{text.error()};
-    found.job_text = std::move(*text);
-  }
+  auto misaligned = misalign(job, gear, asked, analysis, clock);
+  if (auto* errors = misaligned.refused()) return std::move(*errors);
+  analysis.misaligned = std::move(misaligned).value();
+  found.missed = analysis.misaligned.missed();
+  found.job_text = analysis.misaligned.job_text;
   found.json = contact_json(analysis);
   found.summary = contact_summary(analysis);
   std::vector<ease_off::SideMap> maps;

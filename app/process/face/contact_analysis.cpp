@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/units.h"
+#include "app/process/face/searched_pair.h"
 #include "app/process/under_load/loaded_page.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
@@ -162,21 +163,6 @@ Json zone_json(const ContactOfSide& side, std::size_t m, double compound_mm) {
   return zone;
 }
 
-/// The motion curve of one pair alone, in pitches from where it lags least.
-Json motion_json(const ContactOfSide& side) {
-  const auto& pair = side.roll.pair;
-  const auto least = std::min_element(pair.begin(), pair.end(), [&](const auto& a, const auto& b) {
-    return side.side * a.error_rad < side.side * b.error_rad;
-  });
-  Json json = {{"pitches", Json::array()}, {"urad", Json::array()}};
-  const double pitch = side.members.front().flank.surface.pitch;
-  for (std::size_t k = 0; k < pair.size(); k += kMotionStride) {
-    json["pitches"].push_back((pair[k].phi_2 - least->phi_2) / pitch);
-    json["urad"].push_back((pair[k].error_rad - side.roll.error_mean_rad) * app::kMicro);
-  }
-  return json;
-}
-
 /// Adds the loaded pair where the settings have a load, on the exact flanks and on the cut ones.
 process::ValueOrErrors<ContactAnalysis> with_load(const job::Job& job, const face_gear::FaceGear& gear,
                                                   ContactAnalysis analysis) {
@@ -197,7 +183,35 @@ process::ValueOrErrors<ContactAnalysis> with_load(const job::Job& job, const fac
 }  // namespace
 
 ease_off::SideMap ease_off_of(const ContactOfSide& side) {
-  return {side.side, side.as_cut ? "cut" : "exact", &side.members, side.ease_off ? &*side.ease_off : nullptr};
+  ease_off::SideMap map{&kFaceWords,
+                        fmt::format("{},{}", side.as_cut ? "cut" : "exact", side.side),
+                        {},
+                        side.ease_off ? &*side.ease_off : nullptr};
+  for (const auto& member : side.members) {
+    ease_off::MappedFlank flank{member.flank.zone, member.flank.rows, member.flank.columns, {}, {}};
+    for (const Vec3& p : member.flank.points) {
+      flank.x.push_back(radius(p));
+      flank.y.push_back(p.z());
+    }
+    map.flanks.push_back(std::move(flank));
+  }
+  return map;
+}
+
+ease_off::MotionCurve motion_of(const ContactOfSide& side) {
+  ease_off::MotionCurve curve{fmt::format("flank {:+}", side.side),
+                              side.side,
+                              {},
+                              {},
+                              side.roll.error_mean_rad,
+                              side.roll.error_range_rad,
+                              side.roll.cycle.front().phi_2,
+                              side.members.front().flank.surface.pitch};
+  for (const auto& at : side.roll.pair) {
+    curve.phi_2.push_back(at.phi_2);
+    curve.error_rad.push_back(at.error_rad);
+  }
+  return curve;
 }
 
 process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, const face_gear::FaceGear& gear,
@@ -327,15 +341,14 @@ std::string contact_json(const ContactAnalysis& a) {
     s["pairs_touching"] = {r.least_touching, r.most_touching};
     s["pairs_within_compound"] = {r.least_marking, r.most_marking};
     s["ratio_within_compound"] = r.marking_ratio;
-    s["motion_curve"] = motion_json(side);
+    s["motion_curve"] = ease_off::motion_json(motion_of(side), kMotionStride);
     s["ease_off"] = ease_off::map_json(ease_off_of(side));
     s["zones"] = Json::array();
     for (std::size_t m = 0; m < side.members.size(); ++m)
       s["zones"].push_back(zone_json(side, m, a.settings.compound_mm));
     json["flanks"].push_back(std::move(s));
   }
-  if (a.misalignments) json["misalignments"] = ease_off::table_json(*a.misalignments);
-  if (a.optimised) json["optimised"] = ease_off::optimised_json(*a.optimised);
+  ease_off::add_misaligned(json, a.misaligned);
   if (a.loaded) json["loaded"] = under_load::loaded_json(*a.loaded);
   json["notes"] = a.notes;
   return json.dump(2) + "\n";
@@ -371,8 +384,7 @@ std::string contact_summary(const ContactAnalysis& a) {
                          words_of(p, m < side.places.size() ? &side.places[m] : nullptr, a.settings.compound_mm));
     }
   }
-  if (a.misalignments) out += page::table_text(ease_off::table_page(*a.misalignments, ""));
-  if (a.optimised) out += ease_off::optimised_summary(*a.optimised);
+  out += ease_off::misaligned_summary(a.misaligned);
   if (a.loaded) out += under_load::loaded_summary(*a.loaded);
   for (const auto& note : a.notes) out += "  note: " + note + "\n";
   return out;

@@ -8,8 +8,9 @@
 
 #include "app/job/job.h"
 #include "app/process/cut_flanks.h"
-#include "app/process/face/ease_off/map.h"
-#include "app/process/face/ease_off/optimised_pair.h"
+#include "app/process/ease_off/map.h"
+#include "app/process/ease_off/motion.h"
+#include "app/process/ease_off/optimiser.h"
 #include "app/process/face/loaded_contact.h"
 #include "app/process/gear_of_job.h"
 #include "geometry/contact/tooth_contact.h"
@@ -34,6 +35,8 @@ struct ContactOfSide {
 };
 /// Its maps, for those that show them. The side must outlive it.
 [[nodiscard]] ease_off::SideMap ease_off_of(const ContactOfSide& side);
+/// Of one pair of its teeth alone.
+[[nodiscard]] ease_off::MotionCurve motion_of(const ContactOfSide& side);
 
 struct ContactAnalysis {
   std::string job_name, job_file;
@@ -41,11 +44,10 @@ struct ContactAnalysis {
   job::ContactSettings settings;
   double pitch_radius_mm = 0, base_radius_mm = 0;  ///< L_p and M2: levers of the transmission error
   double pinion_r_b_mm = 0, pinion_r_p_mm = 0, pinion_r_a_mm = 0;
-  std::vector<ContactOfSide> sides;                          ///< +1, -1 exact; then +1, -1 as cut
-  std::optional<under_load::LoadedContact> loaded;           ///< where the settings have a load
-  std::optional<ease_off::MisalignmentTable> misalignments;  ///< where the settings have a box
-  std::optional<ease_off::Optimised> optimised;              ///< where that was asked for
-  std::string route;                                         ///< how the cut surface was made; empty: there is none
+  std::vector<ContactOfSide> sides;                 ///< +1, -1 exact; then +1, -1 as cut
+  std::optional<under_load::LoadedContact> loaded;  ///< where the settings have a load
+  ease_off::Misaligned misaligned;
+  std::string route;  ///< how the cut surface was made; empty: there is none
   std::vector<std::string> notes;
 };
 /// A flank of the pair is not plain.

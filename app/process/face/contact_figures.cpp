@@ -95,29 +95,10 @@ namespace {
 
 /// Curves of single pairs; empty where the ratio is constant.
 svg::LineChart motion_chart(const ContactAnalysis& a) {
-  svg::LineChart motion;
-  motion.title = "Motion curves of the pairs";
-  motion.x_label = "gear turn [pitches]";
-  motion.y_label = "error less its mean [\u00b5rad]";
-  motion.note =
-      "Each pair as if it were alone, through its whole mesh and on its edges; of all pairs the one that lags least "
-      "bears, and where two curves cross one takes over from the other.";
-  for (const auto& side : a.sides) {
-    if (side.as_cut || side.roll.error_range_rad < kNoError) continue;
-    const double pitch = 2 * kPi / a.gear_teeth, start = side.roll.cycle.front().phi_2,
-                 largest = 4 * side.roll.error_range_rad;
-    for (const int tooth : {-1, 0, 1}) {
-      svg::ChartSeries series{fmt::format("flank {:+}, pair {:+}", side.side, tooth), {}, {}};
-      for (const auto& p : side.roll.pair) {
-        const double value = p.error_rad - side.roll.error_mean_rad;
-        if (std::abs(value) > largest) continue;
-        series.x.push_back((p.phi_2 - start) / pitch + tooth);
-        series.y.push_back(value * app::kMicro);
-      }
-      if (!series.x.empty()) motion.series.push_back(std::move(series));
-    }
-  }
-  return motion;
+  std::vector<ease_off::MotionCurve> curves;
+  for (const auto& side : a.sides)
+    if (!side.as_cut && side.roll.error_range_rad >= kNoError) curves.push_back(motion_of(side));
+  return ease_off::motion_chart(curves);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "app/process/face/ease_off/map.h"
+#include "app/process/ease_off/map.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -17,14 +17,12 @@ constexpr int kJsonRows = 11, kJsonColumns = 13, kDrawnRows = 121;
 /// Enough for a micrometre of a thousandth.
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
 
-const Vec3& point_of(const SideMap& side, const contact::EaseOff::Place& at) {
-  return (*side.members)[at.member].flank.points[at.index];
-}
-
 Json place_json(const SideMap& side, const contact::EaseOff::Place& at) {
-  const Vec3& p = point_of(side, at);
-  return {
-      {"um", at.gap_mm * app::kUm}, {"zone", (*side.members)[at.member].flank.zone}, {"r", radius(p)}, {"z", p.z()}};
+  const MappedFlank& flank = side.flanks[at.member];
+  return {{"um", at.gap_mm * app::kUm},
+          {"zone", flank.zone},
+          {side.words->x_key, flank.x[at.index]},
+          {side.words->y_key, flank.y[at.index]}};
 }
 
 /// Rows or columns of the grid that are told: the first, the last and so many between.
@@ -35,18 +33,18 @@ std::vector<int> some_of(int count, int most) {
   return out;
 }
 
-Json grid_json(const contact::ContactFlank& flank, const contact::EaseOffMap& map) {
-  Json grid = {{"zone", flank.zone}, {"r", Json::array()}, {"z", Json::array()}, {"um", Json::array()}};
+Json grid_json(const PairWords& words, const MappedFlank& flank, const contact::EaseOffMap& map) {
+  Json grid = {{"zone", flank.zone}, {words.x_key, Json::array()}, {words.y_key, Json::array()}, {"um", Json::array()}};
   const auto columns = some_of(flank.columns, kJsonColumns);
-  for (const int c : columns) grid["r"].push_back(rounded(radius(flank.points[flank.index(0, c)]), 1e-6));
+  for (const int c : columns) grid[words.x_key].push_back(rounded(flank.x[flank.index(0, c)], 1e-6));
   for (const int r : some_of(flank.rows, kJsonRows)) {
     Json heights = Json::array(), values = Json::array();
     for (const int c : columns) {
       const auto k = flank.index(r, c);
-      heights.push_back(rounded(flank.points[k].z(), 1e-6));
+      heights.push_back(rounded(flank.y[k], 1e-6));
       values.push_back(std::isnan(map.gap_mm[k]) ? Json(nullptr) : Json(rounded(map.gap_mm[k] * app::kUm, 1e-4)));
     }
-    grid["z"].push_back(std::move(heights));
+    grid[words.y_key].push_back(std::move(heights));
     grid["um"].push_back(std::move(values));
   }
   return grid;
@@ -55,21 +53,20 @@ Json grid_json(const contact::ContactFlank& flank, const contact::EaseOffMap& ma
 }  // namespace
 
 std::string map_csv(const std::vector<SideMap>& sides) {
-  std::string out = "surface,flank,zone,row,column,r,z,ease_off_um,phi_2_deg,pinion_radius,pinion_Z\n";
+  std::string out = sides.empty() ? "" : std::string(sides.front().words->csv_header) + "\n";
   for (const SideMap& side : sides) {
     if (side.found == nullptr) continue;
-    for (std::size_t m = 0; m < side.members->size(); ++m) {
-      const contact::ContactFlank& f = (*side.members)[m].flank;
+    for (std::size_t m = 0; m < side.flanks.size(); ++m) {
+      const MappedFlank& f = side.flanks[m];
       const contact::EaseOffMap& map = side.found->maps[m];
       for (int r = 0; r < f.rows; ++r)
         for (int c = 0; c < f.columns; ++c) {
           const auto k = f.index(r, c);
-          out += fmt::format("{},{},{},{},{},{:.6f},{:.6f},", side.surface, side.side, f.zone, r, c,
-                             radius(f.points[k]), f.points[k].z());
+          out += fmt::format("{},{},{},{},{:.6f},{:.6f},", side.side, f.zone, r, c, f.x[k], f.y[k]);
           out += std::isnan(map.gap_mm[k])
                      ? ",,,\n"
                      : fmt::format("{:.4f},{:.6f},{:.6f},{:.6f}\n", map.gap_mm[k] * app::kUm, degrees(map.phi_2[k]),
-                                   map.pinion_radius_mm[k], map.pinion_Z_mm[k]);
+                                   map.pinion_across_mm[k], map.pinion_along_mm[k]);
         }
     }
   }
@@ -82,8 +79,8 @@ Json map_json(const SideMap& side) {
                {"least", place_json(side, side.found->least)},
                {"shift_um", side.found->shift_mm * app::kUm},
                {"zones", Json::array()}};
-  for (std::size_t m = 0; m < side.members->size(); ++m)
-    json["zones"].push_back(grid_json((*side.members)[m].flank, side.found->maps[m]));
+  for (std::size_t m = 0; m < side.flanks.size(); ++m)
+    json["zones"].push_back(grid_json(*side.words, side.flanks[m], side.found->maps[m]));
   return json;
 }
 
@@ -91,10 +88,10 @@ std::string map_summary(const SideMap& side) {
   if (side.found == nullptr) return "    ease-off: none, the flanks have no common normal\n";
   const auto& found = *side.found;
   const auto where = [&](const contact::EaseOff::Place& at) {
-    const Vec3& p = point_of(side, at);
-    const std::string zone =
-        side.members->size() > 1 ? fmt::format("zone {}, ", (*side.members)[at.member].flank.zone) : "";
-    return fmt::format("{}r {:.2f}, z {:.2f} mm", zone, radius(p), p.z());
+    const MappedFlank& f = side.flanks[at.member];
+    const std::string zone = side.flanks.size() > 1 ? fmt::format("{} {}, ", side.words->zone, f.zone) : "";
+    return fmt::format("{}{} {:.2f}, {} {:.2f} mm", zone, side.words->x_text, f.x[at.index], side.words->y_text,
+                       f.y[at.index]);
   };
   if (found.greatest.gap_mm < 1e-8) return "    ease-off: none, the flanks are conjugate\n";
   return fmt::format("    ease-off: up to {:.2f} um at {}; least at {}\n", found.greatest.gap_mm * app::kUm,
@@ -104,25 +101,25 @@ std::string map_summary(const SideMap& side) {
 std::vector<page::StudyPage::Figure> map_figures(const SideMap& side, const std::string& name) {
   std::vector<page::StudyPage::Figure> figures;
   if (side.found == nullptr) return figures;
-  for (std::size_t m = 0; m < side.members->size(); ++m) {
-    const contact::ContactFlank& f = (*side.members)[m].flank;
+  for (std::size_t m = 0; m < side.flanks.size(); ++m) {
+    const MappedFlank& f = side.flanks[m];
     svg::FlankFieldDrawing field{
-        "ease-off, " + name, "radius from the gear's axis [mm]", "height z [mm]", "um", 0, f.columns, {}, {}, {}, 0};
+        "ease-off, " + name, side.words->x_label, side.words->y_label, "um", 0, f.columns, {}, {}, {}, 0};
     for (const int r : some_of(f.rows, kDrawnRows)) {
       ++field.rows;
       for (int c = 0; c < f.columns; ++c) {
         const auto k = f.index(r, c);
-        field.x.push_back(radius(f.points[k]));
-        field.y.push_back(f.points[k].z());
+        field.x.push_back(f.x[k]);
+        field.y.push_back(f.y[k]);
         field.value.push_back(side.found->maps[m].gap_mm[k] * app::kUm);
       }
     }
-    const std::string zone = side.members->size() > 1 ? fmt::format(", ring {}", f.zone) : "";
+    const std::string zone = side.flanks.size() > 1 ? fmt::format(", {} {}", side.words->ring, f.zone) : "";
     figures.push_back({"Ease-off: " + name + zone, svg::svg_flank_field(field),
                        fmt::format("How far the gear's flank stands off the one that would run with this pinion at the "
-                                   "exact ratio; at most {:.2f} um. Where nothing is drawn the pinion's involute ends "
+                                   "exact ratio; at most {:.2f} um. Where nothing is drawn the {} "
                                    "before.",
-                                   side.found->greatest.gap_mm * app::kUm)});
+                                   side.found->greatest.gap_mm * app::kUm, side.words->end_of_mate)});
   }
   return figures;
 }

@@ -5,16 +5,26 @@
 #include <string>
 #include <vector>
 
+#include "app/process/ease_off/words.h"
 #include "app/report/page/study_page.h"
 #include "geometry/contact/ease_off.h"
 
 namespace toothpath::ease_off {
 
+/// The grid of one flank, as its map has it.
+struct MappedFlank {
+  int zone = 0, rows = 0, columns = 0;
+  std::vector<double> x, y;  ///< mm, row by row: along the face and across it, as the words of the pair call them
+  [[nodiscard]] std::size_t index(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+  }
+};
+
 /// The flanks of one side of the teeth with their ease-off. What it points at must outlive it.
 struct SideMap {
-  int side = 1;
-  std::string surface;  ///< "exact" or "cut"
-  const std::vector<contact::ContactMember>* members = nullptr;
+  const PairWords* words = nullptr;
+  std::string side;  ///< first cell of a line of ease_off.csv, or its first two: with the surface ahead
+  std::vector<MappedFlank> flanks;
   const contact::EaseOff* found = nullptr;  ///< null: no place has a common normal
 };
 

@@ -1,4 +1,4 @@
-#include "app/process/face/ease_off/misalignment_table.h"
+#include "app/process/ease_off/misalignment_table.h"
 
 #include <tbb/parallel_for.h>
 
@@ -77,13 +77,10 @@ std::vector<NamedMisalignment> corner_misalignments(const Misalignment& stands, 
   return list;
 }
 
-Result<std::vector<MisalignmentRow>> roll_rows(const PairSides& pair, const std::vector<NamedMisalignment>& list,
-                                               const contact::RollOptions& options, double margin) {
+Result<std::vector<MisalignmentRow>> roll_rows(const RollSide& roll, const std::vector<NamedMisalignment>& list) {
   std::vector<std::optional<Result<contact::MisalignedContact>>> found(2 * list.size());
   const WorkShare share(double(found.size()));
-  tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t k) {
-    found[k] = contact::misaligned_contact(pair[k % 2], list[k / 2].moved, options, margin);
-  });
+  tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t k) { found[k] = roll(k % 2, list[k / 2].moved); });
   std::vector<MisalignmentRow> rows;
   for (std::size_t k = 0; k < list.size(); ++k) {
     MisalignmentRow row{list[k], {}};
@@ -104,6 +101,16 @@ std::string reached_text(const contact::PatternPlace& at_edges, double compound_
   return text.empty() ? "inside" : text;
 }
 
+Json place_json(std::size_t zone, const contact::PatternPlace& p, double compound_mm) {
+  return {{"zone", zone},
+          {"marked", p.any},
+          {"profile", p.profile},
+          {"lead", p.lead},
+          {"profile_extent", {p.low, p.high}},
+          {"lead_extent", {p.inner, p.outer}},
+          {"reaches", reached(p, compound_mm)}};
+}
+
 Json table_json(const MisalignmentTable& table) {
   Json json = {{"box", moved_json(table.box)}, {"margin", table.margin}, {"rows", Json::array()}};
   for (const auto& row : table.rows) {
@@ -112,7 +119,8 @@ Json table_json(const MisalignmentTable& table) {
     r["flanks"] = Json::array();
     for (const std::size_t s : {0u, 1u}) {
       const auto& side = row.sides[s];
-      Json flank = {{"side", s == 0 ? 1 : -1},
+      const PairWords& words = *table.words;
+      Json flank = {{words.side_key, words.numbered ? Json(s == 0 ? 1 : -1) : Json(words.sides[s])},
                     {"transmission_error",
                      {{"mean_urad", side.error_mean_rad * app::kMicro},
                       {"range_urad", side.error_range_rad * app::kMicro},
@@ -120,14 +128,7 @@ Json table_json(const MisalignmentTable& table) {
                     {"margin_gap_um", side.margin_gap_mm < 1e100 ? Json(side.margin_gap_mm * app::kUm) : Json(nullptr)},
                     {"zones", Json::array()}};
       for (std::size_t m = 0; m < side.at_edges.size(); ++m) {
-        const contact::PatternPlace& p = side.at_edges[m];
-        flank["zones"].push_back({{"zone", m},
-                                  {"marked", p.any},
-                                  {"profile", p.profile},
-                                  {"lead", p.lead},
-                                  {"profile_extent", {p.low, p.high}},
-                                  {"lead_extent", {p.inner, p.outer}},
-                                  {"reaches", reached(p, table.compound_mm)}});
+        flank["zones"].push_back(place_json(m, side.at_edges[m], table.compound_mm));
       }
       r["flanks"].push_back(std::move(flank));
     }
@@ -138,20 +139,20 @@ Json table_json(const MisalignmentTable& table) {
 
 page::PageTable table_page(const MisalignmentTable& table, const std::string& title) {
   page::PageTable out{title,
-                      {"misalignment", "flank", "ring", "error range urad", "um", "profile %", "lead %",
-                       "profile from to %", "lead from to %", "reaches"},
+                      {"misalignment", table.words->flank, table.words->ring, "error range urad", "um", "profile %",
+                       "lead %", "profile from to %", "lead from to %", "reaches"},
                       {},
                       ""};
   out.note = fmt::format(
       "Centre and extent of the pattern in shares of the flank: profile from the fillet line to the tip, lead from the "
-      "inner end of the ring to the outer. Micrometres at the pitch radius {:.3f} mm.",
-      table.pitch_radius_mm);
+      "inner end of the {} to the outer. Micrometres at the {} {:.3f} mm.",
+      table.words->ring, table.words->lever, table.pitch_radius_mm);
   for (const auto& row : table.rows)
     for (const std::size_t s : {0u, 1u})
       for (std::size_t m = 0; m < row.sides[s].at_edges.size(); ++m) {
         const auto& side = row.sides[s];
         const contact::PatternPlace& p = side.at_edges[m];
-        out.rows.push_back({row.at.name, s == 0 ? "+1" : "-1", std::to_string(m),
+        out.rows.push_back({row.at.name, table.words->sides[s], std::to_string(m),
                             fmt::format("{:.3f}", side.error_range_rad * app::kMicro),
                             fmt::format("{:.4f}", side.error_range_rad * table.pitch_radius_mm * app::kUm),
                             p.any ? fmt::format("{:.1f}", 100 * p.profile) : "-",
@@ -180,8 +181,8 @@ svg::LineChart centre_chart(const MisalignmentTable& table) {
       for (std::size_t m = 0; m < table.rows[n].sides[s].at_edges.size(); ++m) {
         const std::string& name = table.rows[n].at.name;
         svg::ChartSeries series;
-        series.name = fmt::format("{}, flank {}", name.substr(0, name.find_first_of("+-") - 1), s == 0 ? "+1" : "-1");
-        if (table.rows[n].sides[s].at_edges.size() > 1) series.name += fmt::format(", ring {}", m);
+        series.name = name.substr(0, name.find_first_of("+-") - 1) + ", " + table.words->side(s);
+        if (table.rows[n].sides[s].at_edges.size() > 1) series.name += fmt::format(", {} {}", table.words->ring, m);
         for (const MisalignmentRow* row : {&table.rows[n], &table.rows[0], &table.rows[n + 1]}) add(series, *row, s, m);
         chart.series.push_back(std::move(series));
       }
