@@ -11,17 +11,27 @@ using Json = nlohmann::json;
 
 const std::string kWheel = kSamples + "/bevel_wheel.toml";
 
-/// The pinion sample with this as its [contact]; of one hand, which rolls in half the time, or as it is.
+/// A sample of one hand, which rolls in half the time.
+std::string of_one_hand(std::string text) {
+  text = replaced(text, "form = \"herringbone\"", "form = \"single\"");
+  text = replaced(text, "apex_cone_distance = 104.0", "apex_cone_distance = 108.0");
+  return replaced(text, "relief_half_width = 3.2", "# of a herringbone: 3.2");
+}
+
+/// The pinion sample with this as its [contact]; of one hand, or as it is.
 std::string job_with(const TestDir& dir, const std::string& name, const std::string& contact, bool single = true) {
   std::string text = file_text(kSamples + "/bevel_pinion.toml");
-  if (single) {
-    text = replaced(text, "form = \"herringbone\"", "form = \"single\"");
-    text = replaced(text, "apex_cone_distance = 104.0", "apex_cone_distance = 108.0");
-    text = replaced(text, "relief_half_width = 3.2", "# of a herringbone: 3.2");
-  }
+  if (single) text = of_one_hand(text);
   const auto at = text.find("\n[machine]");
   const std::string path = dir / name;
-  write_file(path, text.substr(0, at) + "[contact]\n" + contact + "\n" + text.substr(at));
+  write_file(path, text.substr(0, at) + "\n[contact]\n" + contact + "\n" + text.substr(at));
+  return path;
+}
+
+/// The wheel of one hand.
+std::string mate_of(const TestDir& dir) {
+  const std::string path = dir / "wheel.toml";
+  write_file(path, of_one_hand(file_text(kWheel)));
   return path;
 }
 
@@ -83,7 +93,8 @@ TEST(BevelContactOptimise, WritesAJobThatDoesWhatWasPromised) {
   const TestDir dir;
   const std::string job = job_with(dir, "plain.toml", "[contact.misalignment]\noffset = 0.01\n"),
                     found_job = dir / "found.toml";
-  const Json report = report_of({"contact", job, "--optimise", "--write", found_job, "--out", dir / "out"});
+  const Json report =
+      report_of({"contact", job, "--mate", mate_of(dir), "--optimise", "--write", found_job, "--out", dir / "out"});
   const Json& found = report.at("optimised");
   ASSERT_TRUE(found.at("found").get<bool>()) << found.dump(1);
   EXPECT_EQ(found.at("modify"), "pinion");
@@ -105,7 +116,7 @@ TEST(BevelContactOptimise, WritesAJobThatDoesWhatWasPromised) {
   std::printf("  transmission error %.3f um, the search said %.3f; profile crowning %.1f um\n", worst,
               found.at("transmission_error_um").at("of_the_search").get<double>(), crowning * 1e3);
   EXPECT_NE(file_text(found_job).find(found.at("keys").get<std::string>()), std::string::npos);
-  const Json as_job = report_of({"contact", found_job, "--out", dir / "job"});
+  const Json as_job = report_of({"contact", found_job, "--mate", mate_of(dir), "--out", dir / "job"});
   const Json& table = as_job.at("misalignments").at("rows");
   ASSERT_EQ(table.size(), 3u);
   for (std::size_t k = 0; k < table.size(); ++k) EXPECT_EQ(table[k], rows[k]) << k;
@@ -116,7 +127,8 @@ TEST(BevelContactOptimise, WritesAJobThatDoesWhatWasPromised) {
 TEST(BevelContactOptimise, SaysWhenThereIsNone) {
   const TestDir dir;
   const std::string job = job_with(dir, "plain.toml", "compound = 0.09\n[contact.misalignment]\nangle = 0.5\n");
-  const auto run = run_program({"contact", job, "--optimise", "--out", dir / "out", "--write", dir / "found.toml"});
+  const auto run = run_program(
+      {"contact", job, "--mate", mate_of(dir), "--optimise", "--out", dir / "out", "--write", dir / "found.toml"});
   EXPECT_EQ(run.exit_code, 1) << run.err;
   EXPECT_NE(run.out.find("none was found: at best the gap within 5 % of the edges is"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find(", wall "), std::string::npos);
@@ -130,7 +142,7 @@ TEST(BevelContactOptimise, Refusals) {
                     bare = job_with(dir, "bare.toml", "");
   const auto refused = [&](const std::string& words, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "contact");
-    arguments.insert(arguments.end(), {"--out", dir / "out"});
+    arguments.insert(arguments.end(), {"--mate", mate_of(dir), "--out", dir / "out"});
     const auto run = run_program(arguments);
     EXPECT_EQ(run.exit_code, 3) << words;
     EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
