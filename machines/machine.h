@@ -45,8 +45,10 @@ struct PostSettings {
   std::optional<int> linear_decimals;  ///< digits after the point of X Y Z, 0..9
   std::optional<int> rotary_decimals;  ///< of A B C in degrees, 0..9
   std::optional<bool> index_loop;      ///< tooth indexing as a loop or sub-program (true) or written out (false)
-  std::vector<std::string> tcp_on;     ///< blocks that switch TCP on, e.g. {"M428"}
-  std::vector<std::string> tcp_off;    ///< and off
+  /// A work offset that programs may overwrite: with TCP they turn it to every tooth (LinuxCNC). Empty: they may none.
+  std::string index_offset;
+  std::vector<std::string> tcp_on;   ///< blocks that switch TCP on, e.g. {"M428"}
+  std::vector<std::string> tcp_off;  ///< and off
   /// Blocks that switch the control's own smoothing on ahead of the teeth of an operation and off behind them; empty:
   /// the dialect's way.
   std::vector<std::string> smoothing_on, smoothing_off;

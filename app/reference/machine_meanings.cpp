@@ -104,6 +104,10 @@ constexpr Meaning kMachineMeanings[] = {
     {"post.linear_decimals", "Digits after the point of lengths; left out: those of the dialect."},
     {"post.rotary_decimals", "Digits after the point of angles; left out: those of the dialect."},
     {"post.index_loop", "Teeth as a loop of the program, or written out; left out: what the dialect does."},
+    {"post.index_offset",
+     "LinuxCNC: a work offset that programs may overwrite, `\"G59.3\"`: with TCP one tooth stands in the text, and the "
+     "offset turns it to the others ([dialects](dialects.md#the-zero-of-the-index-rotary)); left out: all teeth are "
+     "written out."},
     {"post.tcp_on", "Blocks that switch TCP on, `[\"M428\"]`; needed for TCP under LinuxCNC."},
     {"post.tcp_off", "Blocks that switch TCP off."},
     {"post.corner_tolerance",

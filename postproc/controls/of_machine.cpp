@@ -39,6 +39,7 @@ class Judge {
     digits();
     corners();
     tcp();
+    index_offset();
     rollover();
     coolants();
     clamps();
@@ -91,6 +92,15 @@ class Judge {
       refuse("tcp", "dialect \"{}\" has no TCP: tcp = \"none\" (joint output) is supported", words_.name);
     else if (machine_.tcp == machines::TcpMode::vectors && words_.vector_words[0].empty())
       refuse("tcp", "dialect \"{}\" has no tool vectors: tcp = \"none\" and \"angles\" are supported", words_.name);
+  }
+
+  void index_offset() {
+    const std::string& name = machine_.post.index_offset;
+    if (name.empty()) return;
+    if (words_.loop.offset_on.empty())
+      refuse("post.index_offset", "post.index_offset: dialect \"{}\" turns no work offset, leave it out", words_.name);
+    else if (const Control* control = find(words_.name); control != nullptr && !control->offsets.has(name))
+      refuse("post.index_offset", "post.index_offset = \"{}\" is none of {}", name, control->offsets.names);
   }
 
   void rollover() {
@@ -301,6 +311,8 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
   d.format.linear_decimals = post.linear_decimals.value_or(d.format.linear_decimals);
   d.format.rotary_decimals = post.rotary_decimals.value_or(d.format.rotary_decimals);
   if (d.exact_path_mm > 0) d.exact_path_mm = machine.exact_corner_mm();
+  if (!d.loop.offset_on.empty() && post.index_offset.empty()) d.loop.frame_on = d.loop.frame_off = {};
+  d.loop.index_offset = post.index_offset;
   if (!post.tcp_on.empty()) d.tcp_on = post.tcp_on;
   if (!post.tcp_off.empty()) {
     d.tcp_off = post.tcp_off;
@@ -337,6 +349,9 @@ joints::AxisOptions axis_options(const text::NcDialect& words, const machines::M
   options.tcp_starts_at_zero = words.tcp_starts_at_zero;
   options.corners = corners_of(words, machine.post);
   options.tcp_loop = !words.loop.frame_on.empty() || (words.tcp_starts_at_zero && words.loop.zero_with_tcp);
+  if (!words.loop.offset_on.empty())
+    options.no_tcp_loop =
+        "with TCP this control turns a work offset, and post.index_offset names none that programs may overwrite";
   return options;
 }
 
@@ -356,6 +371,7 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
   c.top_mm = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
   c.exact_path_mm = machine.exact_corner_mm();
   c.corner_mm = machine.post.corner_tolerance_mm;
+  c.index_offset = machine.post.index_offset;
   c.tcp_on = machine.post.tcp_on;
   c.tcp_off = machine.post.tcp_off;
   c.smoothing_on = machine.post.smoothing_on;
@@ -397,8 +413,9 @@ std::optional<std::string> other_work_offsets(const machines::Machine& machine, 
   const Control* control = find(machine.dialect);
   if (control == nullptr)
     return fmt::format("none that is known: \"{}\" is not one of {}", machine.dialect, list_of_names());
-  if (control->offsets.has(name)) return std::nullopt;
-  return control->offsets.names;
+  if (!control->offsets.has(name)) return control->offsets.names;
+  if (name != machine.post.index_offset) return std::nullopt;
+  return fmt::format("{} without {}, which post.index_offset lets programs overwrite", control->offsets.names, name);
 }
 
 }  // namespace toothpath::controls

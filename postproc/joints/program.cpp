@@ -207,7 +207,7 @@ class ProgramBuilder {
     else if (tcp() && !frame_can_turn())
       program_.no_loop = options_.tcp_loop
                              ? "with TCP this control turns a frame about its work offset, which is not the gear axis"
-                             : "with TCP this control has no frame that a program could turn about the gear axis";
+                             : options_.no_tcp_loop;
     program_.frame_sign = gear_axis.z() > 0 ? 1 : -1;
   }
 

@@ -58,6 +58,8 @@ struct AxisOptions {
   /// While TCP is on the dialect can turn the frame of a loop about the gear axis; with `tcp_starts_at_zero` the frame
   /// is the table's at the angle of the tooth.
   bool tcp_loop = false;
+  /// Why not, where it cannot.
+  const char* no_tcp_loop = "with TCP this control has no frame that a program could turn about the gear axis";
   /// Cuts stand in tilted planes of the control, without TCP; the place that asks for it. A tool that stands along the
   /// first rotary has no plane: its words stay joints.
   std::optional<SourcePosition> tilted_planes = std::nullopt;

@@ -108,8 +108,9 @@ class Parser {
     const std::size_t begin = i_;
     int n = 0;
     while (is_digit(at()) && n < 100000) n = n * 10 + (line_[i_++] - '0');
-    if (i_ == begin || n < 1 || n > 5000) {
-      stop(begin, "parameter number must be 1 to 5000");
+    const int last = o_words_ ? kLastParameter : kLastOfProgram;
+    if (i_ == begin || n < 1 || n > last) {
+      stop(begin, fmt::format("parameter number must be 1 to {}", last));
       return std::nullopt;
     }
     return n;

@@ -70,6 +70,9 @@ struct NcBlock {
 /// 256 characters, expressions nested deeper than 16.
 [[nodiscard]] Result<NcBlock> parse_nc_block(std::string_view line, bool o_words);
 
+/// Numbered parameters of a program; behind them those of the control itself, which LinuxCNC's programs may read.
+inline constexpr int kLastOfProgram = 5000, kLastParameter = 5999;
+
 /// Value of an expression. `parameter(index)` returns a pointer to the value or null if it was never set.
 template <typename Parameters>
 [[nodiscard]] Result<double> evaluate(const NcBlock& block, const NcValue& value, const Parameters& parameter) {

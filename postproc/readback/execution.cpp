@@ -282,6 +282,8 @@ void NcExecution::forget_modes() {
   length_.reset();
   length_of_ = -1;
   offset_.reset();
+  written_.reset();
+  in_written_ = false;
   frame_deg_ = 0;
   coolants_ = 0;
   clamps_.fill(Clamp::unknown);
@@ -340,15 +342,6 @@ NcExecution::Problem NcExecution::to_reference(const Move& m, std::size_t which,
   way.axis = *place;
   if (auto bad = move(way, line)) return bad;
   if (m.has[2] && !rules_.reference_keeps_length) length_.reset();
-  return std::nullopt;
-}
-
-NcExecution::Problem NcExecution::select_offset(const std::string& name) {
-  const auto found = control_.work_offsets.find(name);
-  if (found == control_.work_offsets.end()) return fmt::format("work offset {} is not defined", name);
-  if (tcp_ && offset_ != found->second) return "another work offset with TCP on";
-  if (plane_ && offset_ != found->second) return "another work offset in a tilted plane";
-  offset_ = found->second;
   return std::nullopt;
 }
 
@@ -441,21 +434,6 @@ bool NcExecution::at_zero(std::size_t axis) const {
   return std::abs(control_.rollover[axis] ? std::remainder(word, kFullTurn) : word) <= kZeroRotary;
 }
 
-NcExecution::Problem NcExecution::move_zero(std::size_t axis, double degrees, std::string_view word) {
-  if (tcp_) return fmt::format("{} moves the zero of {} with TCP on", word, control_.letters[axis]);
-  if (!zeros_cleared_ && degrees != 0)
-    return fmt::format("{} ahead of the line that clears it: what an earlier program has left is not known", word);
-  zero_[axis] = degrees;
-  return std::nullopt;
-}
-
-NcExecution::Problem NcExecution::clear_zeros() {
-  if (tcp_ && (zero_[3] != 0 || zero_[4] != 0)) return "the zero of a rotary goes back with TCP on";
-  zero_.fill(0);
-  zeros_cleared_ = true;
-  return std::nullopt;
-}
-
 /// A point of the table frame as the words of TCP name it, seen from the work offset, and back.
 Vec3 NcExecution::in_words(const Vec3& tip) const { return turned_deg(as_frozen(tip, false) - *offset_, -frame_deg_); }
 Vec3 NcExecution::from_words(const Vec3& words) const {
@@ -478,10 +456,7 @@ NcExecution::Problem NcExecution::end_program(bool inside_call) {
   if (feed_mode_ == Feed::inverse_time) return "program end in G93";
   if (spindle_) return "program end while the spindle turns";
   if (tcp_) return "program end with TCP on";
-  for (std::size_t a = 3; a < 5; ++a)
-    if (zero_[a] != 0)
-      return fmt::format("program end while {} counts from {} deg: the next program would begin there",
-                         control_.letters[a], zero_[a]);
+  if (auto bad = zeros_allow_end()) return bad;
   if (plane_) return "program end in a tilted plane: the next program would begin there";
   if (inside_call) return "program end inside a sub-program or loop";
   if (dwell_min_ > 0) {  // no move follows that it could count with
@@ -587,6 +562,11 @@ NcExecution::Problem NcExecution::roll(Move& m) {
   for (std::size_t a = 3; a < 5; ++a) {
     if (!control_.rollover[a] || !m.has[a]) continue;
     const double word = m.axis[a], now = joints_[a], zero = m.machine_frame ? 0 : zero_[a];
+    if (rules_.sign_is_sense && zero != zero_[a])
+      return fmt::format(
+          "machine coordinates of {}, which rolls over, while it counts from {} deg: which way it turns "
+          "is not known here",
+          control_.letters[a], zero_[a]);
     const double least = rules_.sign_is_sense ? -kFullTurn : -kBelowZero;
     if (!(word > least && word < kFullTurn))
       return fmt::format("{} = {} of an axis that rolls over is outside {} 360", control_.letters[a], word,

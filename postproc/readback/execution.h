@@ -36,6 +36,9 @@ struct NcRules {
   bool tcp_needs_zero = false;
   double least_rate = 0;          ///< G93 blocks are raised to this rate, mm/min or deg/min
   bool per_minute_turns = false;  ///< G94 with rotary words without TCP has a defined time
+  /// Work offsets have a turn about Z of their own, and another one may be taken while TCP is on: it changes what words
+  /// mean and nothing else.
+  bool offsets_turn = false;
   bool sign_is_sense =
       false;  ///< the sign of a word says which way a rotary that rolls over turns; else the nearer way is taken
   bool turns_need_axis_blend =
@@ -54,6 +57,12 @@ struct TiltedPlane {
   std::array<double, 2> at_deg{};  ///< turned: the rotaries, within half a turn of zero, stand the tool upright on it
   double cosine = 1, sine = 0;     ///< .. and turn X Y of the words to those of the machine
   Vec3 zero_mm = Vec3::Zero();     ///< .. where the tip of the words X0 Y0 Z0 is, machine coordinates
+};
+
+/// A work offset that the program writes: NcControl::index_offset.
+struct WrittenOffset {
+  Vec3 at_mm = Vec3::Zero();  ///< machine coordinates
+  double turn_deg = 0;        ///< of its X and Y about Z
 };
 
 class NcExecution {
@@ -114,7 +123,10 @@ class NcExecution {
   void switch_coolant(std::string_view word);
   /// A word of the builder that clamps a rotary or releases it. @returns it is one
   bool switch_clamp(std::string_view word);
+  // Work offsets and moved zeros (postproc/readback/zeros.cpp).
   Problem select_offset(const std::string& name);
+  /// Writes NcControl::index_offset, which must not be in force. @param at_mm nothing: it stays where it was written
+  Problem write_offset(const std::optional<Vec3>& at_mm, double turn_deg);
   Problem set_length(int tool);  ///< tool length compensation with the length of this tool
   void drop_length() { length_.reset(); }
   /// The control may leave corners by this. @param linear_only it does not hold for rotaries: feed blocks must not turn
@@ -192,6 +204,8 @@ class NcExecution {
   Problem check_ways(std::int32_t line);
   void forget_modes();
   Problem move_to(const Move& m, std::int32_t line);
+  void set_zero(std::size_t axis, double degrees);
+  Problem zeros_allow_end() const;
   Problem roll(Move& m);
   [[nodiscard]] bool at_zero(std::size_t axis) const;
   Problem clamps_allow(const std::array<double, 5>& goal, std::uint8_t commanded) const;
@@ -217,13 +231,16 @@ class NcExecution {
   std::array<double, 5> zero_{};      // of the words of the rotaries, deg
   bool zeros_cleared_ = false;        // by the program
   std::optional<double> frozen_deg_;  // first rotary where TCP froze the table frame
-  std::array<double, 5> rolled_{};    // rotaries that roll over by the sign of their words: as the control adds them up
+  // Rotaries that roll over by the sign of their words: as the control adds them up, from the zero of their words.
+  std::array<double, 5> rolled_{};
   double frame_deg_ = 0;
   std::optional<TiltedPlane> plane_;
   int operation_ = -1, piece_ = -1, tooth_ = -1, tool_ = -1, next_tool_ = -1;
   Feed feed_mode_ = Feed::none;
   std::optional<double> feed_, length_;
   std::optional<Vec3> offset_;
+  std::optional<WrittenOffset> written_;
+  bool in_written_ = false;  // words count from it
   timing::Corners path_mode_ = timing::Corners::exact;
   double path_tolerance_mm_ = 0;
   double blend_mm_ = 0;

@@ -10,7 +10,6 @@
 namespace toothpath::readback {
 namespace {
 constexpr std::size_t kDeepestCall = 8;
-constexpr std::size_t kNumbered = 5000;       // parameters
 constexpr std::size_t kMostParsed = 1 << 19;  // lines of loops and sub-programs that are kept parsed
 
 /// Names that LinuxCNC keeps to itself: a program cannot set them.
@@ -79,8 +78,8 @@ NcFlow::NcFlow(std::string_view text, const std::string& file, bool o_words, con
       max_steps_(control.max_steps),
       max_idle_(control.max_idle) {
   split(text);
-  parameters_.assign(kNumbered + 1, 0);
-  parameter_set_.assign(kNumbered + 1, false);
+  parameters_.assign(kLastParameter + 1, 0);
+  parameter_set_.assign(kLastParameter + 1, false);
 }
 
 Status NcFlow::run(const Words& words) {
@@ -296,7 +295,7 @@ Result<double> NcFlow::value(const NcBlock& b, const NcValue& v, int column) con
     if (found == nullptr) unset = n;
     return found;
   });
-  if (!r && unset > static_cast<int>(kNumbered))
+  if (!r && unset > kLastOfProgram)
     return here(column, fmt::format("parameter {} was never set by the program: what the control itself puts there is "
                                     "not known here",
                                     name_of(static_cast<std::size_t>(unset))));
@@ -309,7 +308,8 @@ std::optional<Diagnostic> NcFlow::assign(const NcBlock& b) {
   std::vector<double> values;  // none is set before all are known
   for (const auto& w : b.words) {
     if (w.letter != '#') return here(w.column, "a word in a line of assignments");
-    if (own_.count(static_cast<std::size_t>(w.index)) != 0)
+    const auto place = static_cast<std::size_t>(w.index);
+    if (own_.count(place) != 0 || (w.index > kLastOfProgram && w.index <= kLastParameter))
       return here(w.column,
                   fmt::format("{} is the control's own and cannot be set", name_of(static_cast<std::size_t>(w.index))));
     const auto v = value(b, w.value, w.column);

@@ -39,6 +39,8 @@ class NcFlow {
   [[nodiscard]] std::string_view text() const { return lines_[line_]; }  ///< of the line that is being executed
   [[nodiscard]] std::int32_t line() const { return static_cast<std::int32_t>(line_) + 1; }
   [[nodiscard]] Result<double> value(const NcBlock& b, const NcValue& v, int column) const;
+  /// What a parameter of the control itself holds: programs may read it.
+  void tell(std::size_t parameter, double value) { set_parameter(parameter, value, true); }
 
   /// M98, M97, M99, M2.
   [[nodiscard]] bool has_program(std::int64_t number) const { return labels_.count(number) != 0; }

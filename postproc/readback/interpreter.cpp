@@ -23,7 +23,9 @@ class Interpreter {
       : control_(control),
         language_(language),
         flow_(text, file, language.o_words, control),
-        execution_(control, language.rules, sink) {}
+        execution_(control, language.rules, sink) {
+    for (const auto& [name, at] : control.work_offsets) tell_origin(name, at);
+  }
 
   Status run() {
     return flow_.run([this](const NcBlock& b) { return block(b); });
@@ -66,8 +68,8 @@ class Interpreter {
     corners_said_ = false;
     std::map<unsigned, const char*> modes = {{2, "G17"}, {3, "G90"}, {4, "G93 or G94"}, {5, "G21"},
                                              {6, "G40"}, {8, "G80"}, {10, "G61 or G64"}};
-    if (language_.moves_zeros) modes[kZeros] = "G52 with 0 of all axes";
-    else modes[11] = "G92.1";
+    if (has_g(921)) modes[11] = "G92.1";
+    else modes[kZeros] = "G52 with 0 of all axes";
     if (has_g(690)) modes[13] = "G69";
     unsaid_.all(std::move(modes));
     return std::nullopt;
@@ -86,12 +88,16 @@ class Interpreter {
     std::vector<int> m;
     bool dwell = false;                       // G4
     bool zeros = false;                       // G52
+    bool clears = false;                      // G92.1
     bool output = false;                      // M64 P, M65 P
     bool incremental = false;                 // G91
     std::optional<std::size_t> to_reference;  // 0: G28, 1: G30
     bool p_point = false;
     int switch_tcp = -1;  // 1 on, 0 off: a code of the site
     std::optional<double> f, s, h, t, p, q, l;
+    bool writes = false;  // G10
+    int write_column = 1;
+    std::optional<double> turn;  // R
     int column = 1;
     int p_column = 1;
     unsigned groups = 0;
@@ -108,6 +114,8 @@ class Interpreter {
     if (r.dwell) return dwell(r, numbered(b) ? b.words.size() - 1 : b.words.size());
     const std::size_t words = numbered(b) ? b.words.size() - 1 : b.words.size();
     if (r.zeros) return zeros(r, words);
+    if (r.writes) return write_offset(r, words);
+    if (r.turn) return here(r.column, "R is read with G10 L2 alone");
     return apply(r, words);
   }
   static bool numbered(const NcBlock& b) { return b.words.front().letter == 'N'; }
@@ -179,6 +187,10 @@ class Interpreter {
         return once(r.p, w, v);
       case 'Q': return once(r.q, w, v);
       case 'L': return once(r.l, w, v);
+      case 'R':
+        if (!has_g(100)) break;
+        if (!r.writes) r.column = w.column;
+        return once(r.turn, w, v);
       case 'I':
       case 'J':
       case 'K':
@@ -235,6 +247,7 @@ class Interpreter {
       case 434: r.g43 = r.tcp = true; return 7;
       case 490: r.g49 = true; return 7;
       case 800: return 8;
+      case 100: r.writes = true; return 14;
       case 520: r.zeros = language_.moves_zeros; return r.zeros ? 14 : 0;
       case 530: r.g53 = true; return 9;
       case 610:
@@ -244,7 +257,7 @@ class Interpreter {
         r.g61 = !r.g64;
         r.stops = tenths == 611;
         return 10;
-      case 921: return 11;
+      case 921: r.clears = true; return 11;
       case 690: r.no_plane = true; return 13;
       case 682: r.plane = true; return 13;
       case 531: r.to_plane = true; return 14;
@@ -266,10 +279,12 @@ class Interpreter {
     const bool extended = tenths > 0 && tenths == language_.extended.tenths;
     const unsigned group = extended ? kOffsets : group_of(r, tenths);
     r.extended = r.extended || extended;
+    if (tenths == 100) r.write_column = w.column;
     if (group == 0 || std::abs(v * 10 - tenths) > 1e-6)
       return here(w.column, fmt::format("G{} is not in the subset", v));
-    const bool special = tenths == 434 || tenths == 682 || tenths == 531 || tenths == 690 || tenths == 921 ||
-                         tenths == 610 || tenths == 611 || tenths == 640 || (tenths > 590 && tenths < 600);
+    const bool special = tenths == 100 || tenths == 434 || tenths == 682 || tenths == 531 || tenths == 690 ||
+                         tenths == 921 || tenths == 610 || tenths == 611 || tenths == 640 ||
+                         (tenths > 590 && tenths < 600);
     if (special && !has_g(tenths)) return here(w.column, fmt::format("G{} is not in the dialect", v));
     if ((r.groups & (1U << group)) != 0) return here(w.column, "two G words of one modal group in a block");
     r.groups |= 1U << group;
@@ -307,6 +322,40 @@ class Interpreter {
     for (std::size_t a = 3; a < 5; ++a)
       if (has[a])
         if (auto bad = placed(r.column, execution_.move_zero(a, r.move.axis[a], "G52"))) return bad;
+    return std::nullopt;
+  }
+
+  /// Parameters of the control hold the origin of a work offset.
+  void tell_origin(const std::string& name, const Vec3& at_mm) {
+    const int number = language_.number_of_offset == nullptr ? -1 : language_.number_of_offset(name);
+    if (number < 0) return;
+    for (int i = 0; i < 6; ++i)
+      flow_.tell(static_cast<std::size_t>(language_.origin_parameter(number) + i), i < 3 ? at_mm[i] : 0);
+  }
+
+  /// G10 L2 P: where the work offset that the machine file leaves to programs is, and how it is turned.
+  Problem write_offset(const Request& r, std::size_t words) {
+    const auto& has = r.move.has;
+    const auto named = static_cast<std::size_t>(std::count(has.begin(), has.end(), true));
+    if (!r.l || *r.l != 2) return here(r.write_column, "G10 is read with L2 alone");
+    if (control_.index_offset.empty() || !r.p || *r.p != language_.number_of_offset(control_.index_offset))
+      return here(r.write_column,
+                  fmt::format("G10 L2 P{} writes a work offset of the shop: {}", r.p.value_or(0),
+                              control_.index_offset.empty() ? "post.index_offset of the machine file names none"
+                                                            : "post.index_offset is " + control_.index_offset));
+    if (!r.turn || words != 4 + named)
+      return here(r.write_column, "G10 L2 stands in a block of its own, with P, R and axes");
+    bool all = true;
+    for (std::size_t a = 0; a < 5; ++a) {
+      all = all && (has[a] || control_.letters[a] == 0);
+      if (a >= 3 && has[a] && r.move.axis[a] != 0)
+        return here(r.write_column, fmt::format("G10 L2 moves the zero of {} by {} deg, limit 0: G52 does that",
+                                                control_.letters[a], r.move.axis[a]));
+    }
+    if (named != 0 && !all) return here(r.write_column, "G10 L2 names all axes of the machine or none");
+    const auto at = named == 0 ? std::nullopt : std::optional(Vec3(r.move.axis[0], r.move.axis[1], r.move.axis[2]));
+    if (auto bad = placed(r.write_column, execution_.write_offset(at, *r.turn))) return bad;
+    if (at) tell_origin(control_.index_offset, *at);
     return std::nullopt;
   }
 
@@ -397,6 +446,8 @@ class Interpreter {
       if (auto bad = placed(r.column, execution_.choose_tool(*r.t))) return bad;
     if (!r.offset.empty())
       if (auto bad = placed(r.column, execution_.select_offset(r.offset))) return bad;
+    if (r.clears)
+      if (auto bad = placed(r.column, execution_.clear_zeros())) return bad;
     if (auto bad = length(r)) return bad;
     // The tool, the spindle, coolants; a stop and the end stand behind the motion of their block.
     std::sort(r.m.begin(), r.m.end(), [](int a, int b) { return group_of_m(a) < group_of_m(b); });

@@ -34,7 +34,11 @@ struct IsoLanguage {
   std::vector<int> coolant_m = {7, 8, 9};  ///< M words that switch coolants
   ExtendedOffsets extended;
   std::size_t most_m = 1;    ///< M words in a block, of different groups
-  bool moves_zeros = false;  ///< G52: words of rotaries count from its angle; X Y Z take 0 alone
+  bool moves_zeros = false;  ///< G52: words of rotaries count from its angle; X Y Z take 0 alone. G92.1 clears it, too
+  /// G10 L2 P: writes a work offset, by its number; the parameter that holds the origin of one in X, those of Y Z A B C
+  /// follow. Null: there is no G10.
+  int (*number_of_offset)(std::string_view name) = nullptr;
+  int (*origin_parameter)(int number) = nullptr;
   bool local_calls = false;  ///< M97 P calls the lines from N on, up to M99
   DwellNumber dwell = DwellNumber::milliseconds;
   bool dwell_x = false;         ///< G4 X, seconds with a point

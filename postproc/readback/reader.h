@@ -64,6 +64,7 @@ struct NcControl {
   std::optional<machines::ToolCheck> tool_check;
   std::map<int, double> check_tolerance_mm;
   double top_mm = 0;                         ///< highest Z, machine coordinates of the gauge line
+  std::string index_offset;                  ///< work offset that programs may write (LinuxCNC); empty: none
   std::vector<std::string> tcp_on, tcp_off;  ///< codes of the site that switch TCP (LinuxCNC)
   /// Lines of the machine file that switch the control's own smoothing on and off, and what the shop states for it.
   std::vector<std::string> smoothing_on, smoothing_off;

@@ -41,13 +41,10 @@ void NcAxisWords::print(const joints::AxisBlock& b, std::size_t axis, IndexWord 
 
 /// The angle of this tooth and the word.
 void NcAxisWords::shifted_number(std::size_t axis, std::int64_t word) {
-  const NcLoop& loop = dialect_.loop;
   std::string& text = out_.text();
-  if (loop.index_brackets) text += '[';
-  text += loop.index;
+  text += dialect_.loop.index;
   if (word >= 0 && !dialect_.sign_always) text += '+';
   out_.number(word, decimals(axis));
-  if (loop.index_brackets) text += ']';
 }
 
 /// The place within the turn, and the way where the control asks for it.

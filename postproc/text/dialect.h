@@ -10,7 +10,8 @@
 // holds the tooth, {index_axis} letter of the index rotary, {angle} its turn to the tooth where calls stand one by one,
 // {zeros} all axes at 0, {program} number of the sub-program, {operation}. The line "{safe_start}" stands for all lines
 // of `safe_start`, "{pick}" for those of `pick` where the order is spread, "{first_tooth}" for the comment that names
-// the line behind it. Values are printed in the format of the dialect.
+// the line behind it, "{zero_on}" and "{zero_off}" for those of the loop that move the zero of the index rotary. Values
+// are printed in the format of the dialect.
 #pragma once
 
 #include <array>
@@ -43,14 +44,18 @@ struct NcLoop {
   Form form = Form::none;
   NcLinesOfText before, after, call;
   NcLinesOfText pick;  ///< the tooth from its place in the order, by whole numbers; in sequence the place is the tooth
-  std::string place, tooth;     ///< the variables of place and picked tooth
-  std::string index;            ///< ahead of the number of the index rotary: "R2" prints C=R2+12.5
-  bool index_brackets = false;  ///< "[#1+12.5]"
+  std::string place, tooth;  ///< the variables of place and picked tooth
+  std::string index;         ///< ahead of the number of the index rotary: "R2" prints C=R2+12.5
   /// The words of the index rotary count from the angle of the tooth, ahead of it, and from the machine's zero, behind
   /// the operation: they are then those of tooth 0. Empty: `index` stands in every word.
   NcLinesOfText zero_on, zero_off;
   bool zero_with_tcp = false;         ///< while TCP is on, too; else `index` stands in the words then
   NcLinesOfText frame_on, frame_off;  ///< around TCP: turns the frame by the index; empty: no loop with TCP
+  /// The frame is a work offset of the control, {index_offset}, which has the number {index_datum}, which the machine
+  /// file leaves to programs: beside `zero_on` and `zero_off`, with TCP. {origins}: the axes at the origins of the work
+  /// offset. Empty: the frame is none.
+  NcLinesOfText offset_on, offset_off;
+  std::string index_offset;  ///< of the machine file
 };
 
 /// Rotaries that the control counts within one turn (`rollover` in the machine file): words of 0 to 360 deg, and the
@@ -172,6 +177,10 @@ struct NcDialect {
 
   int (*datum)(std::string_view work_offset) =
       nullptr;  ///< {datum}, the number of a work offset; null: the lines do not use it
+  /// {index_datum}, the same for `NcLoop::index_offset`, and the parameter that holds the origin of such a number in X;
+  /// those of Y Z A B C follow.
+  int (*offset_number)(std::string_view work_offset) = nullptr;
+  int (*origin_parameter)(int number) = nullptr;
 
   // TCP.
   bool tcp_codes_of_site = false;             ///< the codes are those of the machine file, there are none else

@@ -46,6 +46,15 @@ NcLines::Values program_values(const joints::AxisProgram& program, const NcDiale
   for (const char letter : program.letters)
     if (letter != 0)
       values["zeros"] += fmt::format("{}{}{}", values["zeros"].empty() ? "" : " ", letter, unsigned_value(0, 0));
+  if (!dialect.loop.index_offset.empty()) {
+    values["index_offset"] = dialect.loop.index_offset;
+    values["index_datum"] = std::to_string(dialect.offset_number(dialect.loop.index_offset));
+    const int origin = dialect.origin_parameter(dialect.offset_number(program.work_offset));
+    for (const char letter : program.letters)
+      if (letter != 0)
+        values["origins"] += fmt::format("{}{}#{}", values["origins"].empty() ? "" : " ", letter,
+                                         origin + static_cast<int>(std::string_view("XYZABC").find(letter)));
+  }
   values["free"] = unsigned_value(kFreeFeed, 0);
   values["teeth"] = std::to_string(program.teeth);
   values["stride"] = std::to_string(program.tooth_stride);
@@ -94,6 +103,9 @@ std::vector<std::string> header_comments(const joints::AxisProgram& program, con
     out.push_back(
         fmt::format("{} LEAVES CORNERS BY AT MOST {} MM: STATED IN THE MACHINE FILE", dialect.corner_flow, within));
   }
+  if (program.loop && program.tcp != machines::TcpMode::none && !dialect.loop.index_offset.empty())
+    out.push_back(
+        fmt::format("{} IS OVERWRITTEN AND TURNED TO THE TEETH; LINEAR_UNITS MUST BE MM", dialect.loop.index_offset));
   if (program.tcp != machines::TcpMode::none && !dialect.tcp_note.empty())
     out.push_back(numbers::comment_text(dialect.tcp_note));
   for (std::size_t a = 3; a < 5; ++a)

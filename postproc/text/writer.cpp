@@ -68,12 +68,19 @@ class Writer {
     for (const auto& t : templates)
       if (t == "{safe_start}") safe_start();
       else if (t == "{pick}") out_.fill(program_.tooth_stride == 1 ? NcLinesOfText{} : dialect_.loop.pick, values_);
+      else if (t == "{zero_on}") move_zero(dialect_.loop.zero_on, dialect_.loop.offset_on, !tilts_);
+      else if (t == "{zero_off}") move_zero(dialect_.loop.zero_off, dialect_.loop.offset_off, true);
       else if (t == "{first_tooth}") out_.comment(first_tooth_comment(program_, *now_));
       else if (t.find("{blend}") != std::string::npos) {
         if (!corners_.contour) corner_line(t);
       } else if (t == "{path_group_end}")
         out_.fill(corners_.group ? NcLinesOfText{dialect_.path_group_end} : NcLinesOfText{}, values_);
       else out_.fill({t}, values_);
+  }
+  /// The lines of the loop that move the zero of the index rotary, with TCP also those that write its work offset.
+  void move_zero(const NcLinesOfText& zero, const NcLinesOfText& offset, bool wanted) {
+    if (zero_moves_ && wanted) out_.fill(zero, values_);
+    if (zero_moves_ && wanted && tcp_) out_.fill(offset, values_);
   }
   void safe_start() {
     out_.fill(dialect_.safe_start, values_);
@@ -246,11 +253,9 @@ class Writer {
   /// One tooth, its index angle given by the control's arithmetic.
   void loop_body(const joints::AxisOperation& op) {
     fill(dialect_.loop.before);
-    if (zero_moves_ && !tilts_) fill(dialect_.loop.zero_on);
     tooth_of_loop(op);
     behind_tooth();
     fill(dialect_.loop.after);
-    if (zero_moves_) fill(dialect_.loop.zero_off);
   }
   void tooth_of_loop(const joints::AxisOperation& op) {
     forget();
@@ -356,7 +361,7 @@ class Writer {
     inverse_time_ = false;
     values_["z"] = out_.value(b.words[2], words_.decimals(2));
     const bool on = b.kind == joints::BlockKind::tcp_on;
-    const bool turned = program_.loop && dialect_.loop.form == NcLoop::Form::in_line;
+    const bool turned = program_.loop && dialect_.loop.form != NcLoop::Form::called;
     if (!on && turned) fill(dialect_.loop.frame_off);
     fill(on ? dialect_.tcp_on : dialect_.tcp_off);
     if (on && turned) fill(dialect_.loop.frame_on);

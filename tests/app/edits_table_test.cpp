@@ -1,7 +1,8 @@
 // Edits that somebody could make by hand, planted in a program of every form of output: the table of
 // docs/planted_edits.md says of each what `check` finds it by, or that it is harmless. Where it passes, a reader of the
 // tests' own (nc_walk, plain_machine) measures that the tool still comes wherever the program cut.
-// TOOTHPATH_WRITE_EDITS=1 writes what was found into the table.
+// TOOTHPATH_WRITE_EDITS=1 writes what was found into the table; another value is a regular expression of the edits that
+// are tried and written.
 #include <array>
 #include <cstdlib>
 #include <map>
@@ -25,7 +26,7 @@ struct EditedForm {
 
 std::vector<EditedForm> edited_forms() {
   std::vector<EditedForm> out;
-  for (int k = 0; k < 10; ++k) out.push_back({kForms[k]});
+  for (const OutputForm& form : planted_forms()) out.push_back({form});
   out.push_back({{"fanuc", "none", false}, "fanuc_ac"});
   out.push_back({{"mitsubishi_m80", "none", false}, "m80_ac"});
   out.push_back({{"siemens", "none", true}, "siemens_ac"});
@@ -227,17 +228,17 @@ void edit_links(const Editable& p, Rows& out) {
     out.emplace_back("the way down of a link left out", down);
     out.emplace_back("across and down of a link swapped", swapped);
   }
-  const std::string c = siemens ? "C=(?:R2)?|CYCLE800\\(0,\"\",0,39,0,0,[0-9]+,R2"
-                                : "[ #]C\\[?(?:#1)?|FN 1: Q5 = \\+Q2 \\+ |G68.2 .* I|SPC";
+  const std::string c =
+      siemens ? "C=(?:R2)?|CYCLE800\\(0,\"\",0,39,0,0,[0-9]+,R2" : "[ #]C|FN 1: Q5 = \\+Q2 \\+ |G68.2 .* I|SPC";
   out.emplace_back("sign of C in a link",
                    apt ? std::nullopt
                        : signed_otherwise(all, heidenhain ? "^\\d+ L C|FN 1: Q5 = \\+Q2 \\+ "
                                                : siemens  ? "^G0 C=R2|CYCLE800\\(0,\"\",0,39,0,0,[0-9]+,R2"
-                                                          : "^G0 C\\[#1|^G0 C|^G68.2 .* I"));
+                                                          : "^G0 C|^G68.2 .* I"));
   out.emplace_back("sign of C in a cut", apt ? std::nullopt
                                              : signed_otherwise(all, heidenhain ? "^\\d+ L X.* C"
                                                                      : siemens  ? "^G1 X.* C=R2"
-                                                                                : "^G1 X.* C\\[#1|^G1 X.* C"));
+                                                                                : "^G1 X.* C"));
   out.emplace_back("sign of A in a link",
                    apt ? std::nullopt
                        : signed_otherwise(all, heidenhain ? "^\\d+ L C.* A|SPA"
@@ -257,11 +258,27 @@ void edit_links(const Editable& p, Rows& out) {
     auto minus = replaced(all, "R2=0-R1", "R2=R1");
     out.back().second = minus ? minus : replaced(all, "R2=R1", "R2=0-R1");
   } else if (control == "linuxcnc") {
-    auto minus = replaced(all, "call \\[0-#1", "call [#1");
-    out.back().second = minus ? minus : replaced(all, "call \\[#1", "call [0-#1");
+    auto minus = replaced(all, "(G52 C\\[)0-#1", "$1#1");
+    out.back().second = minus ? minus : replaced(all, "(G52 C\\[)#1", "$010-#1");
   } else {
     out.back().second = signed_otherwise(all, "^G52 C", find(all, "^M98").value_or(all.size()));
   }
+}
+
+/// Where the words of LinuxCNC's loops count from. (The zeros of other controls: IndexZero in tests/postproc.)
+void edit_zeros(const Editable& p, Rows& out) {
+  const Lines& all = p.lines();
+  const bool loop = p.control() == "linuxcnc" && find(all, "^G52 C\\[");
+  const auto turned = loop ? find(all, "^G59\\.3$") : std::nullopt;
+  out.emplace_back("G52 of the index left out", loop ? dropped(all, "^G52 C\\[") : std::nullopt);
+  out.emplace_back("G92.1 behind the teeth left out",
+                   loop ? dropped(all, "^G92\\.1$", *find(all, "^o\\d+ endwhile$")) : std::nullopt);
+  out.emplace_back("G59.3 left out", turned ? dropped(all, "^G59\\.3$") : std::nullopt);
+  out.emplace_back("G54 behind G59.3 left out", turned ? dropped(all, "^G54$", *turned) : std::nullopt);
+  const std::string angle = "(^G10 L2 P9 .*R\\[)";
+  auto sign = replaced(all, angle + "0-", "$1");
+  if (!sign) sign = replaced(all, angle, "$010-");
+  out.emplace_back("sign of R in G10", turned ? sign : std::nullopt);
 }
 
 void edit_conditions(const Editable& p, Rows& out) {
@@ -377,6 +394,7 @@ Rows edits_of(const Editable& p) {
   Rows out;
   edit_cuts(p, out);
   edit_links(p, out);
+  edit_zeros(p, out);
   edit_conditions(p, out);
   edit_teeth(p, out);
   return out;
@@ -450,12 +468,15 @@ TEST_P(EditsTable, SaysWhatCheckSays) {
   ASSERT_TRUE(p.made());
   const auto as_made = p.check(p.lines());
   ASSERT_EQ(as_made.kind, "harmless") << as_made.text;
-  const bool write = std::getenv("TOOTHPATH_WRITE_EDITS") != nullptr;
+  const char* const rows = std::getenv("TOOTHPATH_WRITE_EDITS");
+  const bool write = rows != nullptr;
+  const std::regex wanted(write && rows != std::string("1") ? rows : "");
   std::string page = file_text(kTable);
   Table table = table_of(page);
   if (write && std::find(table.forms.begin(), table.forms.end(), form) == table.forms.end())
     table.forms.push_back(form);
   for (const auto& [name, lines] : edits_of(p)) {
+    if (!std::regex_search(name, wanted)) continue;
     std::string said = "-";
     if (lines && *lines != p.lines()) {
       const Lines edited = renumbered(*lines, p.control());

@@ -40,8 +40,11 @@ TEST(IndexLoop, IsFollowedOrSaysWhyNot) {
   EXPECT_GT(under_tcp.lines, 30000u);
   EXPECT_EQ(
       under_tcp.warnings,
-      "m.toml:55:14: post.index_loop = true is not followed, every tooth is written out: with TCP this control has "
-      "no frame that a program could turn about the gear axis\n");
+      "m.toml:55:14: post.index_loop = true is not followed, every tooth is written out: with TCP this control turns "
+      "a work offset, and post.index_offset names none that programs may overwrite\n");
+  const Loop turned = run_with("index_loop = true\nindex_offset = \"G59.3\"", "angles", on_axis);
+  EXPECT_EQ(turned.warnings, "");
+  EXPECT_LT(turned.lines, 3000u);
   EXPECT_NE(run_with("index_loop = true", "none", off_axis).warnings.find("the gear does not turn about its own axis"),
             std::string::npos);
   // Nobody asked.

@@ -30,14 +30,20 @@ struct OutputForm {
 /// Every form. The first ten, of the face gears of a check, have every control, with and without TCP, with vectors, in
 /// loops and written out; the next six are those of the bevel gears.
 inline constexpr OutputForm kForms[] = {
-    {"linuxcnc", "none", true},       {"mitsubishi_m80", "none", true}, {"siemens", "vectors", true},
-    {"heidenhain", "angles", true},   {"apt", "vectors", false},        {"haas", "none", false},
-    {"fanuc", "angles", false},       {"fanuc", "none", true},          {"heidenhain", "none", true},
-    {"linuxcnc", "angles", false},    {"heidenhain", "vectors", true},  {"siemens", "angles", true},
-    {"siemens", "none", true},        {"siemens", "angles", false},     {"linuxcnc", "none", false},
-    {"siemens", "vectors", false},    {"heidenhain", "none", false},    {"heidenhain", "angles", false},
-    {"heidenhain", "vectors", false}, {"siemens", "none", false},       {"fanuc", "none", false},
-    {"mitsubishi_m80", "none", false}};
+    {"linuxcnc", "none", true},        {"mitsubishi_m80", "none", true}, {"siemens", "vectors", true},
+    {"heidenhain", "angles", true},    {"apt", "vectors", false},        {"haas", "none", false},
+    {"fanuc", "angles", false},        {"fanuc", "none", true},          {"heidenhain", "none", true},
+    {"linuxcnc", "angles", false},     {"heidenhain", "vectors", true},  {"siemens", "angles", true},
+    {"siemens", "none", true},         {"siemens", "angles", false},     {"linuxcnc", "none", false},
+    {"siemens", "vectors", false},     {"heidenhain", "none", false},    {"heidenhain", "angles", false},
+    {"heidenhain", "vectors", false},  {"siemens", "none", false},       {"fanuc", "none", false},
+    {"mitsubishi_m80", "none", false}, {"linuxcnc", "angles", true}};
+/// Those ten, and the one that turns a work offset.
+inline std::vector<OutputForm> planted_forms() {
+  std::vector<OutputForm> out = {std::begin(kForms), std::begin(kForms) + 10};
+  out.push_back(kForms[std::size(kForms) - 1]);
+  return out;
+}
 
 inline void replace_once(std::string& text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);
@@ -59,7 +65,8 @@ inline std::string random_machine(const OutputForm& form, Random& random) {
     if (random(0, 1) < 0.5) replace_once(text, sign, std::string("sign = 1") + (sign + 9));
   text += fmt::format("\n[post]\nindex_loop = {}\n", form.loop);
   if (form.control == std::string("linuxcnc") && form.tcp != std::string("none"))
-    text += "tcp_on = [\"M428\"]\ntcp_off = [\"M429\"]\n";
+    text +=
+        std::string("tcp_on = [\"M428\"]\ntcp_off = [\"M429\"]\n") + (form.loop ? "index_offset = \"G59.3\"\n" : "");
   return text;
 }
 

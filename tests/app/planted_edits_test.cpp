@@ -7,7 +7,6 @@ namespace toothpath::test {
 namespace {
 
 class PlantedEdits : public testing::TestWithParam<OutputForm> {};
-std::vector<OutputForm> forms() { return {std::begin(kForms), std::begin(kForms) + 10}; }
 INSTANTIATE_TEST_SUITE_P(Forms, PlantedEdits, testing::ValuesIn(forms()), [](const auto& form) {
   std::string name = form.param.name();
   std::replace(name.begin(), name.end(), ' ', '_');

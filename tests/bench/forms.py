@@ -25,7 +25,7 @@ def machine_text(control, tcp, loop):
     if control == "linuxcnc":
         text += "corner_tolerance = 0.0005\n"
     if control == "linuxcnc" and tcp != "none":
-        text += 'tcp_on = ["M428"]\ntcp_off = ["M429"]\n'
+        text += 'tcp_on = ["M428"]\ntcp_off = ["M429"]\n' + ('index_offset = "G59.3"\n' if loop else "")
     if control == "heidenhain":
         text += 'coolant_mist = ["M7", "M9"]\n'
     return text

@@ -31,6 +31,13 @@ inline constexpr PostKeys kPostKeys[] = {
      ""},
     {"smoothing of an M80", "mitsubishi_m80",
      "smoothing_on = [\"G61.4\"]\nsmoothing_off = [\"G64\"]\nsmoothing_tolerance = 1\n", ""},
+    {"an offset that programs may overwrite", "linuxcnc", "index_offset = \"G59.3\"\n", ""},
+    {"one of a control that turns none", "siemens", "index_offset = \"G505\"\n",
+     "m.toml:18:16: error: post.index_offset: dialect \"siemens\" turns no work offset, leave it out\n"},
+    {"one that there is not", "linuxcnc", "index_offset = \"G59.4\"\n",
+     "m.toml:18:16: error: post.index_offset = \"G59.4\" is none of G54 to G59 and G59.1 to G59.3\n"},
+    {"one that is a number", "linuxcnc", "index_offset = 9\n",
+     "m.toml:18:16: error: post.index_offset must be a text, is a whole number\n"},
     {"corner tolerance of LinuxCNC", "linuxcnc", "corner_tolerance = 0.1\n", ""},
     {"corner tolerance of a Fanuc", "fanuc", "corner_tolerance = 0.002\n", ""},
 

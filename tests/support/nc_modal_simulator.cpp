@@ -71,10 +71,18 @@ Language linuxcnc() {
                      {"M428", "tcp", "on"},
                      {"M429", "tcp", "off"},
                      {"M2", "-", "end"}});
+  l.lines = {{R"(G52 [ABC]\[.*\])", "shift", "on"},
+             {R"(G10 L2 P9 X#5221 Y#5222 Z#5223 C#5226 A#5224 R\[.*\])", "written offset", "turned"},
+             {R"(G10 L2 P9 R0)", "written offset", "straight"},
+             {"G59\\.3", "offset", "G59.3"},
+             {"G59\\.3", "frame", "turned"},
+             {"G54", "offset", "G54"},
+             {"G54", "frame", "zero"}};
   l.axis = kPlainWord;
-  l.safe = {{"units", "mm"},   {"plane", "xy"},  {"distance", "absolute"}, {"feed", "per minute"}, {"radius", "off"},
-            {"length", "off"}, {"cycle", "off"}, {"shift", "off"},         {"offset", "G54"}};  // smoothing: on or off
-                                                                                                // by what the cuts turn
+  l.safe = {{"units", "mm"},   {"plane", "xy"},   {"distance", "absolute"}, {"feed", "per minute"},
+            {"radius", "off"}, {"length", "off"}, {"cycle", "off"},         {"shift", "off"},
+            {"offset", "G54"}, {"frame", "zero"}};  // smoothing: on or off
+                                                    // by what the cuts turn
   l.end = l.safe;
   l.end["smoothing"] = l.end["spindle"] = "off";
   return l;
@@ -328,7 +336,7 @@ class Order {
   }
 
   inline static const std::regex kSub{R"(o(\d+) sub)"}, kEndSub{R"(o(\d+) endsub)"},
-      kCall{R"((?:o|M9[78] P)(\d+)(?: call .*)?)"}, kWhile{R"(o(\d+) while .*)"}, kEnd{R"((?:o(\d+) endwhile|ENDFOR))"},
+      kCall{R"((?:o|M9[78] P)(\d+)(?: call.*)?)"}, kWhile{R"(o(\d+) while .*)"}, kEnd{R"((?:o(\d+) endwhile|ENDFOR))"},
       kRepeat{R"((?:CALL LBL (\d+) REP\d+|FN 12: IF \+Q\d LT \+\d+ GOTO LBL (\d+)))"}, kProgram{R"([ON](\d+))"};
   const std::vector<Line>& lines_;
   std::map<std::string, std::size_t> subs_;
@@ -365,7 +373,7 @@ Meaning read_line(const Language& l, const std::string& code) {
   }
   // Statements whose words are no axis words, and assignments.
   static const std::regex statement(
-      R"(ROT .*|G52 .*|CYCL .*|TOOL .*|FUNCTION .*|PLANE .*|TRANS.*|BEGIN .*|END .*|Q\d .*|FN .*|R\d=.*|FOR .*|LBL .*)"),
+      R"(ROT .*|G52 .*|G10 .*|CYCL .*|TOOL .*|FUNCTION .*|PLANE .*|TRANS.*|BEGIN .*|END .*|Q\d .*|FN .*|R\d=.*|FOR .*|LBL .*)"),
       assignment(R"(#\d=.*)");
   if (line_known && (code.find(' ') == std::string::npos || std::regex_match(code, statement))) return out;
   if (std::regex_match(code, assignment)) return out;

@@ -1,5 +1,6 @@
 #include "tests/support/nc_walk.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <map>
@@ -205,7 +206,8 @@ class IsoWalker : public Walker {
         probe(R"(G91 G38\.3 Z\[0-2\*[0-9.]+\] F[0-9.]+)");
     if (matches(code, linuxcnc_ ? probe : macro)) return steps_ = linuxcnc_, measured();
     if (steps_) return code == "G90" && (steps_ = false, true);  // nothing else is meant in G91
-    if (!linuxcnc_ && matches(code, zero)) return zeros(found_[1]);
+    if (matches(code, zero)) return zeros(found_[1]);
+    if (linuxcnc_ && code.rfind("G10 ", 0) == 0) return offset(code);
     for (std::size_t k = 0; k < code.size();) {
       if (code[k] == ' ') {
         ++k;
@@ -266,6 +268,13 @@ class IsoWalker : public Walker {
     }
     return matches(code, begin);
   }
+  /// The last work offset, at the origins of the first one, turned.
+  bool offset(const std::string& code) {
+    static const std::regex written(R"(G10 L2 P9( X#5221 Y#5222 Z#5223(?: [ABC]#522[456])+)? R(\S+))");
+    if (!matches(code, written) || !(found_[1].matched || offset_turn_)) return false;
+    offset_turn_ = number(found_[2]);
+    return true;
+  }
   /// X Y Z may only be 0.
   bool zeros(const std::string& words) {
     std::istringstream in(words);
@@ -292,11 +301,13 @@ class IsoWalker : public Walker {
     return set_axis(letter, number(text));
   }
   bool code_g(const std::string& g) {
-    static const std::map<std::string, int> harmless = {{"17", 0}, {"40", 0}, {"80", 0}, {"90", 0}, {"92.1", 1},
-                                                        {"93", 0}, {"94", 0}, {"54", 0}, {"61", 0}, {"69", 2}};
+    static const std::vector<std::string> harmless = {"17", "40", "80", "90", "93", "94", "61"};
     if (g == "0" || g == "1") return rapid_ = g == "0", motion_known_ = true;
     if (g == "21") return metric_ = true;
     if (g == "93" || g == "94") inverse_ = g == "93";
+    if (g == "92.1" && linuxcnc_) return zero_ = {}, true;
+    if (g == "54") return turned_ = 0, true;
+    if (g == "59.3" && linuxcnc_) return turned_ = offset_turn_.value(), true;
     if (g == "53") return next_.machine = true;
     if (g == "43") return length_ = true;
     if (g == "43.4" && !linuxcnc_) return length_ = tip_ = true;
@@ -305,8 +316,7 @@ class IsoWalker : public Walker {
       if (!linuxcnc_) tip_ = false;
       return true;
     }
-    const auto found = harmless.find(g);
-    return found != harmless.end() && found->second != (linuxcnc_ ? 2 : 1);
+    return (g == "69" && !linuxcnc_) || std::find(harmless.begin(), harmless.end(), g) != harmless.end();
   }
   bool code_m(const std::string& m) {
     static const std::vector<std::string> harmless = {"0", "1", "3", "5", "7", "8", "9", "19"};
@@ -319,6 +329,7 @@ class IsoWalker : public Walker {
   }
 
   bool linuxcnc_, steps_ = false;
+  std::optional<double> offset_turn_;  // of the offset that the program has written, deg
   std::vector<std::pair<std::size_t, Variables>> returns_;
 };
 

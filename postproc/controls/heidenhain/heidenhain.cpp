@@ -85,8 +85,9 @@ text::NcDialect words() {
   d.vector_feed = "LN";
   d.planes = planes();
   d.loop.form = text::NcLoop::Form::in_line;
-  d.loop.before = {"{first_tooth}", "Q1 = {first}", "LBL {label}", "{pick}", "Q2 = {turns} * 360 / {teeth}"};
-  d.loop.after = {"Q1 = Q1 + 1", "FN 12: IF +Q1 LT +{end} GOTO LBL {label}"};
+  d.loop.before = {"{first_tooth}", "Q1 = {first}", "LBL {label}", "{pick}", "Q2 = {turns} * 360 / {teeth}",
+                   "{zero_on}"};
+  d.loop.after = {"Q1 = Q1 + 1", "FN 12: IF +Q1 LT +{end} GOTO LBL {label}", "{zero_off}"};
   d.loop.pick = {"Q6 = ( Q1 * {stride} + 0.5 ) / {teeth}", "Q6 = INT Q6", "Q4 = Q1 * {stride} - Q6 * {teeth}"};
   d.loop.place = "Q1";
   d.loop.tooth = "Q4";

@@ -12,6 +12,13 @@
 namespace toothpath::controls {
 namespace {
 
+/// 1 to 9: G54 to G59, G59.1 to G59.3.
+int number_of_offset(std::string_view name) {
+  if (const int basic = basic_offset(name); basic > 0) return basic - 53;
+  return tenth_offset(name) > 0 ? 6 + tenth_offset(name) : -1;
+}
+int origin_parameter(int number) { return 5201 + 20 * number; }
+
 text::NcDialect words() {
   text::NcDialect d;
   d.name = "linuxcnc";
@@ -49,21 +56,23 @@ text::NcDialect words() {
   d.loop.form = text::NcLoop::Form::sub_program;
   d.loop.before = {"o{label} sub"};
   d.loop.after = {"o{label} endsub"};
-  d.loop.call = {"{first_tooth}",
-                 "#1={first}",
-                 "o{label+1} while [#1 LT {end}]",
-                 "{pick}",
-                 "o{label} call [{turns}*360/{teeth}]",
-                 "#1=[#1+1]",
-                 "o{label+1} endwhile"};
+  d.loop.call = {"{first_tooth}", "#1={first}",          "o{label+1} while [#1 LT {end}]",
+                 "{pick}",        "{zero_on}",           "o{label} call",
+                 "#1=[#1+1]",     "o{label+1} endwhile", "{zero_off}"};
   d.loop.pick = {"#2=[[#1*{stride}] MOD {teeth}]"};
   d.loop.place = "#1";
   d.loop.tooth = "#2";
-  d.loop.index = "#1";
-  d.loop.index_brackets = true;
+  d.loop.zero_on = {"G52 {index_axis}[{sign}{tooth}*360/{teeth}]"};  // of an axis that rolls over below a turn
+  d.loop.zero_off = {"G92.1"};
+  d.loop.zero_with_tcp = true;
+  // A turn of X Y belongs to a work offset there: one that the machine file leaves to programs.
+  d.loop.offset_on = {"G10 L2 P{index_datum} {origins} R[{frame_sign}{tooth}*360/{teeth}]"};
+  d.loop.offset_off = {"G10 L2 P{index_datum} R0"};
+  d.loop.frame_on = {"{index_offset}"};
+  d.loop.frame_off = {"{offset}"};
+  d.offset_number = number_of_offset;
+  d.origin_parameter = origin_parameter;
   d.rollover.way = text::NcRollover::Way::sign;
-  d.rollover.index = "[{word} MOD 360]";
-  d.rollover.backwards = "[{teeth}-{tooth}]";
   d.rollover.note = "{axis} ROLLS OVER: [AXIS_{axis}] WRAPPED_ROTARY = 1";
   return d;
 }
@@ -81,9 +90,11 @@ double corner_of_g64(double p_mm, double q_mm, double exact_mm) {
 const readback::IsoLanguage& language() {
   static const readback::IsoLanguage l = [] {
     readback::IsoLanguage linuxcnc;
-    linuxcnc.o_words = linuxcnc.codes_of_site = true;
+    linuxcnc.o_words = linuxcnc.codes_of_site = linuxcnc.moves_zeros = true;
     linuxcnc.point_needed = false;
-    linuxcnc.g_tenths = {591, 592, 593, 610, 611, 640, 921};
+    linuxcnc.g_tenths = {100, 591, 592, 593, 610, 611, 640, 921};
+    linuxcnc.number_of_offset = number_of_offset;
+    linuxcnc.origin_parameter = origin_parameter;
     linuxcnc.corner_of_g64 = corner_of_g64;
     linuxcnc.most_m = 4;
     linuxcnc.dwell = readback::DwellNumber::seconds;
@@ -91,7 +102,7 @@ const readback::IsoLanguage& language() {
     linuxcnc.rules.stop = readback::ProgramStop::waits;
     linuxcnc.rules.reference_keeps_length = true;
     linuxcnc.rules.least_rate = 0.1;  // before 2.9.0 the rate of a G93 block is raised to this
-    linuxcnc.rules.per_minute_turns = linuxcnc.rules.sign_is_sense = true;
+    linuxcnc.rules.per_minute_turns = linuxcnc.rules.sign_is_sense = linuxcnc.rules.offsets_turn = true;
     return linuxcnc;
   }();
   return l;
@@ -111,7 +122,7 @@ std::string tool_table(std::span<const tool::ToolAssembly> tools) {
   return text;
 }
 
-bool has_offset(std::string_view name) { return basic_offset(name) > 0 || tenth_offset(name) > 0; }
+bool has_offset(std::string_view name) { return number_of_offset(name) > 0; }
 
 }  // namespace
 

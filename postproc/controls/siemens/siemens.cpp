@@ -65,11 +65,11 @@ text::NcDialect words() {
   d.vector_words = {"A3=", "B3=", "C3="};
   d.planes = planes();
   d.loop.form = text::NcLoop::Form::in_line;
-  d.loop.before = {"{first_tooth}", "FOR R1={first} TO {last}", "{pick}", "R2={turns}*360/{teeth}"};
+  d.loop.before = {"{first_tooth}", "FOR R1={first} TO {last}", "{pick}", "R2={turns}*360/{teeth}", "{zero_on}"};
   d.loop.pick = {"R4=R1*{stride}-{teeth}*TRUNC((R1*{stride}+0.5)/{teeth})"};
   d.loop.place = "R1";
   d.loop.tooth = "R4";
-  d.loop.after = {"ENDFOR"};
+  d.loop.after = {"ENDFOR", "{zero_off}"};
   d.loop.index = "R2";
   d.rollover.way = text::NcRollover::Way::shortest;
   d.rollover.open = "DC(";

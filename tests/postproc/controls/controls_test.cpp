@@ -77,6 +77,10 @@ TEST(Controls, WorkOffsetsAreThoseOfTheControl) {
       {"heidenhain", "100", "the presets 1 to 99, or G54 for preset 1 to G59 for 6, G59.1 for 7 to G59.3 for 9"},
       {"heidenhain", "07", "the presets 1 to 99, or G54 for preset 1 to G59 for 6, G59.1 for 7 to G59.3 for 9"}};
   for (const auto& [control, name, text] : wrong) EXPECT_EQ(others(control, name), text) << name;
+  m.post.index_offset = "G59.3";
+  EXPECT_EQ(others("linuxcnc", "G59.2"), "");
+  EXPECT_EQ(others("linuxcnc", "G59.3"),
+            "G54 to G59 and G59.1 to G59.3 without G59.3, which post.index_offset lets programs overwrite");
   EXPECT_EQ(others("grbl", "G54"), "none that is known: \"grbl\" is not one of " + controls::list_of_names());
 }
 

@@ -24,6 +24,7 @@ inline const std::vector<Post>& all_posts() {
   static const std::vector<Post> posts = {{"linuxcnc_joints", "linuxcnc", machines::TcpMode::none, false},
                                           {"linuxcnc_joints_teeth", "linuxcnc", machines::TcpMode::none, true},
                                           {"linuxcnc_tcp", "linuxcnc", machines::TcpMode::angles, true},
+                                          {"linuxcnc_tcp_turned", "linuxcnc", machines::TcpMode::angles, false},
                                           {"fanuc_joints", "fanuc", machines::TcpMode::none, false},
                                           {"fanuc_joints_teeth", "fanuc", machines::TcpMode::none, true},
                                           {"fanuc_tcp", "fanuc", machines::TcpMode::angles, true},

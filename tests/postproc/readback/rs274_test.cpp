@@ -5,7 +5,7 @@
 #include <regex>
 #include <sstream>
 
-#include "tests/postproc/readback/nc_case.h"
+#include "tests/postproc/joints/trunnion_post.h"
 #include "tests/support/rs274.h"
 
 namespace toothpath {
@@ -138,15 +138,22 @@ TEST_P(Rs274, AgreesWithOurReaderMoveByMove) {
   EXPECT_EQ(i, ours.size());
 }
 
+/// How X and Y are turned.
+void note_turn(const std::string& line, double& turn) {
+  std::smatch m;
+  if (std::regex_search(line, m, std::regex("SET_XY_ROTATION\\(([-0-9.]+)"))) turn = std::stod(m[1]);
+}
+
+class Rs274Tcp : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(WrittenOut, Rs274Tcp, testing::Bool());
+
 // With TCP the words are the tip. LinuxCNC's interpreter knows no remaps: without the two codes it reads the same
-// numbers.
-TEST(Rs274Tcp, AgreesAboutTipWordsAndFeeds) {
-  machines::Machine m = trunnion();
-  m.tcp = machines::TcpMode::angles;
-  m.post.tcp_on = {"M428"};
-  m.post.tcp_off = {"M429"};
-  const auto text = nc_text({sample_path(0.3, 0.4, 12)}, m, standing(), 3);
+// numbers. In the loop it turns X and Y by the work offset that the program writes, and moves the zero of C.
+TEST_P(Rs274Tcp, AgreesAboutTipWordsAndFeeds) {
+  const machines::Machine m = trunnion_with("linuxcnc", machines::TcpMode::angles);
+  const auto text = nc_text({sample_path(0.3, 0.4, 12)}, m, standing(), 3, GetParam());
   ASSERT_TRUE(text) << text.error().message;
+  ASSERT_EQ(text->text.find("G59.3\n") == std::string::npos, GetParam());
   const auto out = interpret(std::regex_replace(text->text, std::regex("M42[89]\n"), ""), "tcp");
   ASSERT_EQ(out.exit, 0) << out.messages;
   const auto control = controls::control_of(m, standing(), tools());
@@ -156,26 +163,37 @@ TEST(Rs274Tcp, AgreesAboutTipWordsAndFeeds) {
   const std::regex motion(
       "STRAIGHT_(FEED|TRAVERSE)\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)");
   std::size_t i = 0, tips = 0;
+  double zero = 0, turn = 0;
   for (const auto& l : out.lines) {
     std::smatch match;
+    note_zero(l, zero);
+    note_turn(l, turn);
     if (!std::regex_search(l, match, motion)) continue;
     ASSERT_LT(i, ours.size());
     const readback::ExecutedMove& e = ours[i++];
     EXPECT_EQ(e.rapid, match[1] == "TRAVERSE");
-    if (!e.tcp) continue;
+    if (!e.tcp) {
+      EXPECT_EQ(turn, 0) << l;
+      continue;
+    }
     ++tips;
-    for (int k = 0; k < 3; ++k)
-      EXPECT_NEAR(e.tip[k] - standing().work_offset_at_mm[k], std::stod(match[static_cast<std::size_t>(2 + k)]), 6e-5);
+    const Vec3 words(std::stod(match[2]), std::stod(match[3]), std::stod(match[4]));
+    const Vec3 tip = standing().work_offset_at_mm + Eigen::AngleAxisd(radians(turn), Vec3::UnitZ()) * words;
+    // Four decimals of the turn, too.
+    EXPECT_LT((e.tip - tip).norm(), 1e-4 + 1e-4 * words.norm() * radians(1)) << l;
     EXPECT_NEAR(e.joints[4], std::stod(match[5]), 6e-5);
-    EXPECT_NEAR(e.joints[3], std::stod(match[7]), 6e-5);
+    EXPECT_NEAR(e.joints[3], zero + std::stod(match[7]), 1.2e-4);
   }
+  EXPECT_EQ(turn, 0);
+  EXPECT_EQ(zero, 0);
   EXPECT_EQ(i, ours.size());
   EXPECT_GT(tips, 3u * 24u);
 }
 
 // The golden files that are plain ISO are programs for LinuxCNC too.
 TEST(Rs274Golden, ReadsTheFiles) {
-  for (const char* file : {"linuxcnc_joints.ngc", "linuxcnc_tcp.ngc", "fanuc_joints.nc", "mitsubishi_m80.nc"}) {
+  for (const char* file :
+       {"linuxcnc_joints.ngc", "linuxcnc_tcp.ngc", "linuxcnc_tcp_turned.ngc", "fanuc_joints.nc", "mitsubishi_m80.nc"}) {
     std::ifstream in(std::string(TOOTHPATH_SOURCE_DIR) + "/tests/golden/posts/" + file);
     ASSERT_TRUE(in) << file;
     std::stringstream text;

@@ -27,6 +27,7 @@ INSTANTIATE_TEST_SUITE_P(
     Files, GoldenPost,
     testing::Values(Golden{"linuxcnc_joints.ngc", "linuxcnc", machines::TcpMode::none, 0.1, false},
                     Golden{"linuxcnc_tcp.ngc", "linuxcnc", machines::TcpMode::angles, 0.1, true},
+                    Golden{"linuxcnc_tcp_turned.ngc", "linuxcnc", machines::TcpMode::angles, 0.1, false},
                     Golden{"fanuc_joints.nc", "fanuc", machines::TcpMode::none, 0, false},
                     Golden{"fanuc_tcp.nc", "fanuc", machines::TcpMode::angles, 0.1, true},
                     Golden{"mitsubishi_m80.nc", "mitsubishi_m80", machines::TcpMode::none, 0, false},

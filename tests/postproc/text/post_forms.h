@@ -32,25 +32,26 @@ inline const std::vector<PostForm>& rollover_forms() {
   static const std::vector<PostForm> forms = [] {
     std::vector<PostForm> list;
     for (const int sense : {1, -1})
-      for (const PostForm& f :
-           {PostForm{"linuxcnc", machines::TcpMode::none, 0.1, false},
-            PostForm{"linuxcnc", machines::TcpMode::none, 0.1, true},
-            PostForm{"linuxcnc", machines::TcpMode::angles, 0.1, true},
-            PostForm{"fanuc", machines::TcpMode::none, 0, false}, PostForm{"fanuc", machines::TcpMode::none, 0.1, true},
-            PostForm{"fanuc", machines::TcpMode::angles, 0.1, true},
-            PostForm{"fanuc", machines::TcpMode::none, 0.1, false},
-            PostForm{"fanuc", machines::TcpMode::angles, 0.1, false},
-            PostForm{"mitsubishi_m80", machines::TcpMode::none, 0.1, true},
-            PostForm{"siemens", machines::TcpMode::none, 0.1, false},
-            PostForm{"siemens", machines::TcpMode::none, 0.1, true},
-            PostForm{"siemens", machines::TcpMode::angles, 0.1, false},
-            PostForm{"siemens", machines::TcpMode::vectors, 0.1, false},
-            PostForm{"siemens", machines::TcpMode::vectors, 0.1, true},
-            PostForm{"heidenhain", machines::TcpMode::none, 0, false},
-            PostForm{"heidenhain", machines::TcpMode::angles, 0, false},
-            PostForm{"heidenhain", machines::TcpMode::angles, 0.1, true},
-            PostForm{"heidenhain", machines::TcpMode::angles, 0.1, false},
-            PostForm{"heidenhain", machines::TcpMode::vectors, 0.1, true}}) {
+      for (const PostForm& f : {PostForm{"linuxcnc", machines::TcpMode::none, 0.1, false},
+                                PostForm{"linuxcnc", machines::TcpMode::none, 0.1, true},
+                                PostForm{"linuxcnc", machines::TcpMode::angles, 0.1, true},
+                                PostForm{"linuxcnc", machines::TcpMode::angles, 0.1, false},
+                                PostForm{"fanuc", machines::TcpMode::none, 0, false},
+                                PostForm{"fanuc", machines::TcpMode::none, 0.1, true},
+                                PostForm{"fanuc", machines::TcpMode::angles, 0.1, true},
+                                PostForm{"fanuc", machines::TcpMode::none, 0.1, false},
+                                PostForm{"fanuc", machines::TcpMode::angles, 0.1, false},
+                                PostForm{"mitsubishi_m80", machines::TcpMode::none, 0.1, true},
+                                PostForm{"siemens", machines::TcpMode::none, 0.1, false},
+                                PostForm{"siemens", machines::TcpMode::none, 0.1, true},
+                                PostForm{"siemens", machines::TcpMode::angles, 0.1, false},
+                                PostForm{"siemens", machines::TcpMode::vectors, 0.1, false},
+                                PostForm{"siemens", machines::TcpMode::vectors, 0.1, true},
+                                PostForm{"heidenhain", machines::TcpMode::none, 0, false},
+                                PostForm{"heidenhain", machines::TcpMode::angles, 0, false},
+                                PostForm{"heidenhain", machines::TcpMode::angles, 0.1, true},
+                                PostForm{"heidenhain", machines::TcpMode::angles, 0.1, false},
+                                PostForm{"heidenhain", machines::TcpMode::vectors, 0.1, true}}) {
         list.push_back(f);
         list.back().rollover = sense;
       }
@@ -71,7 +72,8 @@ inline const std::vector<PostForm>& post_forms() {
       {"siemens", machines::TcpMode::none, 0.1, false},      {"siemens", machines::TcpMode::angles, 0.1, false},
       {"siemens", machines::TcpMode::vectors, 0.1, false},   {"siemens", machines::TcpMode::vectors, 0.1, true},
       {"heidenhain", machines::TcpMode::none, 0, false},     {"heidenhain", machines::TcpMode::angles, 0, false},
-      {"heidenhain", machines::TcpMode::vectors, 0.1, true}, {"apt", machines::TcpMode::vectors, 0.1, true}};
+      {"heidenhain", machines::TcpMode::vectors, 0.1, true}, {"apt", machines::TcpMode::vectors, 0.1, true},
+      {"linuxcnc", machines::TcpMode::angles, 0.1, false}};
   static const std::vector<PostForm> all = [] {
     std::vector<PostForm> list = forms;
     for (const auto& f : rollover_forms()) list.push_back(f);
