@@ -21,7 +21,7 @@ std::ostream& operator<<(std::ostream& out, const RolloverCase& c) { return out 
 
 class RolloverRun : public ::testing::TestWithParam<RolloverCase> {};
 INSTANTIATE_TEST_SUITE_P(Run, RolloverRun,
-                         ::testing::Values(RolloverCase{"xyzac_large", "ngc", R"( C-?\[\[#1\+([\d.]+)\] MOD 360\])",
+                         ::testing::Values(RolloverCase{"xyzac_large", "ngc", R"( C(-?[\d.]+))",
                                                         "(C ROLLS OVER: [AXIS_C] WRAPPED_ROTARY = 1)"},
                                            RolloverCase{
                                                "fanuc_ac", "nc", R"( C(-?[\d.]+))",
