@@ -8,31 +8,6 @@ namespace {
 
 using ShapeGradients = Eigen::Matrix<double, 3, kBrickNodes>;
 
-/// d(shape)/d(u, v, w) of the serendipity brick.
-ShapeGradients shape_gradients(double u, double v, double w) {
-  ShapeGradients g;
-  const double x[3] = {u, v, w};
-  for (int n = 0; n < kBrickNodes; ++n) {
-    const auto& p = brick_places()[static_cast<std::size_t>(n)];
-    // One factor a coordinate: 1 + p x, or 1 - x^2 where the node lies in the middle.
-    double f[3], df[3], sum = -2, dsum[3];
-    bool corner = true;
-    for (int k = 0; k < 3; ++k) {
-      const int pk = p[static_cast<std::size_t>(k)];
-      f[k] = pk == 0 ? 1 - x[k] * x[k] : 1 + pk * x[k];
-      df[k] = pk == 0 ? -2 * x[k] : pk;
-      sum += pk * x[k];
-      dsum[k] = pk;
-      corner &= pk != 0;
-    }
-    for (int k = 0; k < 3; ++k) {
-      const double others = f[(k + 1) % 3] * f[(k + 2) % 3];
-      g(k, n) = corner ? (df[k] * others * sum + f[0] * f[1] * f[2] * dsum[k]) / 8 : df[k] * others / 4;
-    }
-  }
-  return g;
-}
-
 GaussRule rule_of(int n) {
   GaussRule r;
   r.n = n;
@@ -65,6 +40,30 @@ const GaussRule& gauss_rule(int n) {
   return n == 2 ? two : n == 3 ? three : n == 4 ? four : six;
 }
 
+ShapeGradients brick_gradients(double u, double v, double w) {
+  ShapeGradients g;
+  const double x[3] = {u, v, w};
+  for (int n = 0; n < kBrickNodes; ++n) {
+    const auto& p = brick_places()[static_cast<std::size_t>(n)];
+    // One factor a coordinate: 1 + p x, or 1 - x^2 where the node lies in the middle.
+    double f[3], df[3], sum = -2, dsum[3];
+    bool corner = true;
+    for (int k = 0; k < 3; ++k) {
+      const int pk = p[static_cast<std::size_t>(k)];
+      f[k] = pk == 0 ? 1 - x[k] * x[k] : 1 + pk * x[k];
+      df[k] = pk == 0 ? -2 * x[k] : pk;
+      sum += pk * x[k];
+      dsum[k] = pk;
+      corner &= pk != 0;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const double others = f[(k + 1) % 3] * f[(k + 2) % 3];
+      g(k, n) = corner ? (df[k] * others * sum + f[0] * f[1] * f[2] * dsum[k]) / 8 : df[k] * others / 4;
+    }
+  }
+  return g;
+}
+
 BrickMatrix brick_stiffness(const BrickNodes& nodes, double nu, double& least_jacobian) {
   const double mu = 1 / (2 * (1 + nu)), lambda = nu / ((1 + nu) * (1 - 2 * nu));
   const GaussRule& rule = gauss_rule(3);
@@ -73,7 +72,7 @@ BrickMatrix brick_stiffness(const BrickNodes& nodes, double nu, double& least_ja
   for (int a = 0; a < 27; ++a) {
     const auto i = static_cast<std::size_t>(a % 3), j = static_cast<std::size_t>(a / 3 % 3),
                k = static_cast<std::size_t>(a / 9);
-    const ShapeGradients local = shape_gradients(rule.x[i], rule.x[j], rule.x[k]);
+    const ShapeGradients local = brick_gradients(rule.x[i], rule.x[j], rule.x[k]);
     const Mat3 map = nodes * local.transpose();  // d(x)/d(u, v, w)
     const double det = map.determinant();
     least_jacobian = std::min(least_jacobian, det);

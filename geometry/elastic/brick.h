@@ -19,6 +19,9 @@ using BrickMatrix = Eigen::Matrix<double, 3 * kBrickNodes, 3 * kBrickNodes>;
 /// Corner and mid-edge places in (u, v, w), each -1, 0 or 1.
 [[nodiscard]] const std::array<std::array<int, 3>, kBrickNodes>& brick_places();
 
+/// d(shape of every node)/d(u, v, w) at a place.
+[[nodiscard]] Eigen::Matrix<double, 3, kBrickNodes> brick_gradients(double u, double v, double w);
+
 /// Stiffness of one brick for E = 1.
 /// @param nu                  Poisson's ratio, 0 to 0.49
 /// @param[out] least_jacobian smallest determinant of the map at the 27 Gauss points, mm^3; <= 0: the brick is folded

@@ -40,6 +40,7 @@ class SectorBuilder {
   Sector build(double pitch, const Vec3& axis, const SectionMap& map) {
     Sector out;
     out.pitch = Eigen::AngleAxisd(pitch, axis).toRotationMatrix();
+    out.foot = foot_;
     place_nodes(out, map);
     make_bricks(out);
     make_stations(out);

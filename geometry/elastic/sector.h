@@ -45,6 +45,7 @@ struct Sector {
   std::vector<std::array<int, 3>> lattice;  ///< of a node: doubled counts of bricks across, up and along the face
   std::vector<std::array<int, kBrickNodes>> bricks;
   std::vector<int> low_cut, high_cut;  ///< nodes in the middles of the spaces; high_cut[n] is low_cut[n] a pitch on
+  int foot = 0;                        ///< lattice count up to which the rim reaches
   std::vector<int> held;               ///< back of the rim
   Mat3 pitch = Mat3::Identity();       ///< turn onto the next sector
   int columns = 0, rows = 0;           ///< of stations: along the face; from the tip down to the end of the flank

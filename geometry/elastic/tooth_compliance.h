@@ -26,6 +26,16 @@ struct ToothCompliance {
 /// Refused: a stiffness that is not positive definite.
 [[nodiscard]] Result<ToothCompliance> tooth_compliance(const Sector& sector, double nu, int teeth);
 
+/// What a hat does to whole teeth, for E = 1.
+struct ToothFields {
+  int reach = 0;  ///< neighbours on either side
+  /// Of the tooth o pitches on, o = -reach..reach: displacements of its nodes in its own frame, 3 rows a node, a column
+  /// the hat of force 1 of a station, mm/N.
+  std::vector<Eigen::MatrixXd> at_offset;
+};
+/// Parameters and refusals as above.
+[[nodiscard]] Result<ToothFields> tooth_fields(const Sector& sector, double nu, int teeth);
+
 /// Area of the hat of every station, mm^2.
 [[nodiscard]] std::vector<double> hat_areas(const Sector& sector);
 

@@ -56,13 +56,16 @@ std::vector<ContactLine> contact_lines(const face_gear::FaceGearSurface<double>&
     ContactLine out;
     out.tooth = j;
     if (!LineOfTooth(f, side, phi + j * pitch, bounds, nullptr).find(out.from_B, out.to_B)) continue;
-    const LineOfTooth line(f, side, phi + j * pitch, bounds, options.pinion);
+    const LineOfTooth line(f, side, phi + j * pitch, bounds, options.pinion, {options.removal, options.half_width_mm});
     if (options.pinion != nullptr && !line.find(out.from_B, out.to_B)) continue;
     std::vector<double> length(1, 0.0);
-    std::vector<Vec3> points(1, line.at(out.from_B).point);
+    LinePlace before = line.at(out.from_B);
+    out.least_gap = before.gap;
     for (int k = 1; k <= kChords; ++k) {
-      points.push_back(line.at(out.from_B + (out.to_B - out.from_B) * k / kChords).point);
-      length.push_back(length.back() + (points.back() - points[points.size() - 2]).norm());
+      LinePlace here = line.at(out.from_B + (out.to_B - out.from_B) * k / kChords);
+      length.push_back(length.back() + (here.point - before.point).norm());
+      out.least_gap = std::min(out.least_gap, here.gap);
+      before = std::move(here);
     }
     out.length = length.back();
     if (out.length < kShortest) continue;
@@ -79,7 +82,9 @@ std::vector<ContactLine> contact_lines(const face_gear::FaceGearSurface<double>&
       s.gap -= s.curvature * s.beyond * s.beyond / 2;
       s.beyond = 0;
       s.length = step;
-      s.along = (line.at(B_at(step * (k + 1))).point - line.at(B_at(step * k)).point).normalized();
+      const LinePlace from = line.at(B_at(step * k)), to = line.at(B_at(step * (k + 1)));
+      s.along = (to.point - from.point).normalized();
+      s.gap = (from.gap + 4 * s.gap + to.gap) / 6;  // mean over the piece, Simpson
       s.at_end = k == 0 || k == count - 1;
       out.segments.push_back(s);
     }

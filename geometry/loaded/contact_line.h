@@ -4,6 +4,7 @@
 // Derivation: docs/loaded_contact.md 2.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "geometry/base/result.h"
@@ -35,6 +36,9 @@ struct ContactBounds {
   double least_Z = 0, most_Z = 0;     ///< sections of the pinion that it can touch
 };
 
+/// What modifications take off both flanks at a place of the plain ones, housing, mm along the normals; empty: nothing.
+using Removal = std::function<double(const Vec3&)>;
+
 /// A place where a flank can press, with the strip around it.
 struct Segment {
   int ring = 0, tooth = 0;  ///< tooth that stands where tooth 0 stands `tooth` pitches later
@@ -42,7 +46,7 @@ struct Segment {
   Vec3 point = Vec3::Zero(), normal = Vec3::Zero(), along = Vec3::Zero();  ///< housing; normal out of the gear
   double length = 0;
   double curvature = 0;         ///< relative, across the line, 1/mm
-  double gap = 0;               ///< of the unloaded flanks, mm
+  double gap = 0;               ///< of the unloaded flanks, mm; mean over the piece
   double beyond = 0;            ///< > 0: the centre lies off the flank, the nearest material is so far away
   bool at_end = false;          ///< first or last segment on the flank
   Vec3 nearest = Vec3::Zero();  ///< the point itself; beyond the ends the nearest material, housing
@@ -56,6 +60,7 @@ struct ContactLine {
   int tooth = 0;
   double length = 0;  ///< on the flank, mm
   double from_B = 0, to_B = 0;
+  double least_gap = 0;           ///< of the unloaded flanks along the line, mm; 0 where the pinion is the shaper
   std::vector<Segment> segments;  ///< those on the flank, in the order of B; then those beyond its ends
 };
 
@@ -69,6 +74,8 @@ struct LineOptions {
   /// A pinion that touches in a point, or stands off its place: the line is then the valley of least gap, a place for
   /// every B, and segments carry that gap. Null: the pinion is the shaper, the gap 0.
   const contact::Pinion<double>* pinion = nullptr;
+  /// What is taken off the flanks; null: nothing. With a pinion: the valley is that of the modified flanks.
+  const Removal* removal = nullptr;
 };
 [[nodiscard]] std::vector<ContactLine> contact_lines(const face_gear::FaceGearSurface<double>& f, int ring, int side,
                                                      double phi, const ContactBounds& bounds,

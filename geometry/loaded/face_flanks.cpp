@@ -34,6 +34,7 @@ FaceFlanks::FaceFlanks(const LoadedPair& pair, double force, double phi) : pair_
     LineOptions options;
     options.segment_mm = pair.options.segment_mm;
     options.pinion = &ring.moved;
+    options.removal = &ring.removal;
     for (const auto& line : contact_lines(ring.surface, ring.ring, pair.side, phi, ring.bounds, options)) {
       line_mm_ += line.length;
       add(r, line, force);
@@ -43,7 +44,8 @@ FaceFlanks::FaceFlanks(const LoadedPair& pair, double force, double phi) : pair_
 
 LineOfTooth FaceFlanks::line_of(const CellSite& site) const {
   const PairRing& ring = pair_.rings[site.ring];
-  return {ring.surface, pair_.side, phi_ + site.tooth * 2 * kPi / pair_.shaper_teeth, ring.bounds, &ring.moved};
+  return {ring.surface, pair_.side,  phi_ + site.tooth * 2 * kPi / pair_.shaper_teeth,
+          ring.bounds,  &ring.moved, {&ring.removal, 0}};
 }
 
 Segment FaceFlanks::segment(const CellSite& site, const LineOfTooth& line, const LinePlace& p) const {

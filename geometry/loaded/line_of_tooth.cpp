@@ -8,7 +8,8 @@
 namespace toothpath::loaded {
 namespace {
 
-constexpr int kSamples = 600;  // of B over the flank
+constexpr int kSamples = 600;         // of B over the flank
+constexpr double kLeastReach = 0.01;  // mm: of differences of a removal
 
 }  // namespace
 
@@ -86,6 +87,7 @@ void LineOfTooth::bend(LinePlace& p) const {
   const double e = turned(basis.e, turn).dot(e_1), l = turned(basis.l, turn).dot(e_1),
                k = pinion_->cos_bb / (pinion_->r_b * theta_1);
   H.ee += k * e * e, H.el += k * e * l, H.ll += k * l * l;
+  if (bent_by_.removal != nullptr) bend_by_removal(p.point, turned(basis.e, turn), turned(basis.l, turn), H);
   p.curvature = H.k1();
   p.roundness = H.k2() / H.k1();
   // The eigenvector of the larger curvature, from the row that is further from zero.
@@ -94,6 +96,16 @@ void LineOfTooth::bend(LinePlace& p) const {
                                                           : Vec3(basis.e * H.el + basis.l * row_l);
   if (steepest.norm() > 0) p.steepest = turned(steepest, turn).normalized();
   else p.steepest = turned(basis.e, turn);
+}
+
+void LineOfTooth::bend_by_removal(const Vec3& point, const Vec3& e, const Vec3& l,
+                                  face_gear::FaceGearSurface<double>::ShapeOperator& H) const {
+  const double h = std::max(kLeastReach, bent_by_.reach_mm);
+  const auto at = [&](double x, double y) { return (*bent_by_.removal)(point + h * (x * e + y * l)); };
+  const double here = 2 * at(0, 0);
+  H.ee += (at(1, 0) + at(-1, 0) - here) / (h * h);
+  H.ll += (at(0, 1) + at(0, -1) - here) / (h * h);
+  H.el += (at(1, 1) + at(-1, -1) - at(1, -1) - at(-1, 1)) / (4 * h * h);
 }
 
 LineOfTooth::Moves LineOfTooth::moves(const LinePlace& p) const {
@@ -134,22 +146,26 @@ bool LineOfTooth::find(double& from, double& to) const {
 
 double LineOfTooth::gap(double theta, double B) const {
   const face_gear::FaceGearSurface<double>::FlankPlace place(f_, side_, theta, B);
-  auto on_pinion = pinion_->place(turned(place.housing(), f_.i * (phi_ - place.phi())));
+  const Vec3 point = turned(place.housing(), f_.i * (phi_ - place.phi()));
+  auto on_pinion = pinion_->place(point);
   on_pinion.radius = std::max(on_pinion.radius, pinion_->r_b);
   const double phi_1 = phi_ * f_.i / pinion_->ratio;
   double turn = pinion_->turn_at(side_, on_pinion);
   turn += 2 * kPi * std::round((phi_1 - turn) / (2 * kPi));
-  return side_ * pinion_->r_b * pinion_->cos_bb * (phi_1 - turn);
+  const double removed = bent_by_.removal != nullptr ? (*bent_by_.removal)(point) : 0;
+  return removed + side_ * pinion_->r_b * pinion_->cos_bb * (phi_1 - turn);
 }
 
 double LineOfTooth::valley(double B, double start) const {
   constexpr double h = 1e-4;
-  double theta = std::max(start, 1e-3);
-  for (int k = 0; k < 12; ++k) {
+  double theta = std::max(start, 1e-3), low = -1e300, high = 1e300;
+  for (int k = 0; k < 30; ++k) {
     const double here = gap(theta, B), up = gap(theta + h, B), down = gap(theta - h, B);
     const double slope = (up - down) / (2 * h), bend = (up - 2 * here + down) / (h * h);
     if (!(bend > 0)) break;
-    const double step = std::clamp(-slope / bend, -0.1, 0.1);
+    (slope < 0 ? low : high) = theta;
+    double step = std::clamp(-slope / bend, -0.1, 0.1);
+    if (!(theta + step > low && theta + step < high) && high - low < 1) step = (low + high) / 2 - theta;
     theta += step;
     if (std::abs(step) < 1e-9) break;
   }

@@ -17,13 +17,23 @@ struct LinePlace {
   Vec3 steepest = Vec3::Zero();  ///< direction in the tangent plane that bends by `curvature`; with a pinion of its own
 };
 
+/// A removal, and over how far to either side its curvature is taken: a strip presses on its own width, and curvatures
+/// of reliefs may jump.
+struct BentBy {
+  const Removal* removal = nullptr;
+  double reach_mm = 0;  ///< 0: as little as differences resolve
+};
+
 class LineOfTooth {
  public:
   /// @param phi  turn of the shaper that stands where the gear does, from this tooth's own
   /// @param pinion  null: the pinion is the shaper, the gap is 0
+  /// @param bent_by  what is taken off the flanks; with a pinion
   LineOfTooth(const face_gear::FaceGearSurface<double>& f, int side, double phi, const ContactBounds& bounds,
-              const contact::Pinion<double>* pinion)
-      : f_(f), side_(side), phi_(phi), bounds_(bounds), pinion_(pinion) {}
+              const contact::Pinion<double>* pinion, const BentBy& bent_by = {})
+      : f_(f), side_(side), phi_(phi), bounds_(bounds), pinion_(pinion) {
+    if (bent_by.removal != nullptr && *bent_by.removal) bent_by_ = bent_by;
+  }
 
   /// The place of the line with this B.
   [[nodiscard]] LinePlace at(double B) const;
@@ -46,7 +56,10 @@ class LineOfTooth {
   [[nodiscard]] Vec3 axis_of_pinion() const { return pinion_ != nullptr ? pinion_->a : f_.a(); }
   /// Of the unloaded flanks at a place of the gear while both stand where the ratio puts them.
   [[nodiscard]] double gap(double theta, double B) const;
-  /// theta of the least gap at this B, by Newton; the gap is nearly a parabola.
+  /// What the removal adds to the relative curvatures, in the directions e and l of the tangent plane.
+  void bend_by_removal(const Vec3& point, const Vec3& e, const Vec3& l,
+                       face_gear::FaceGearSurface<double>::ShapeOperator& H) const;
+  /// theta of the least gap at this B, by Newton between bounds: the gap is nearly a parabola, or pieces of some.
   [[nodiscard]] double valley(double B, double start) const;
   [[nodiscard]] double end(double in, double out) const;
 
@@ -55,6 +68,7 @@ class LineOfTooth {
   double phi_;
   const ContactBounds& bounds_;
   const contact::Pinion<double>* pinion_;
+  BentBy bent_by_;
 };
 
 /// A place as a segment without length.

@@ -27,13 +27,17 @@ class PositionProblem {
     places_.clear(), line_of_.clear();
     line_mm_ = 0;
     int line_number = 0;
+    double least = 1e300;
     for (const PairRing& ring : pair_.rings) {
       LineOptions options;
       options.segment_mm = pair_.options.segment_mm;
       options.approach_mm = approach_mm;
       options.half_width_mm = half_width;
+      if (ring.removal) options.pinion = &ring.moved, options.removal = &ring.removal;
       for (auto& line : contact_lines(ring.surface, ring.ring, pair_.side, phi_, ring.bounds, options)) {
         line_mm_ += line.length;
+        // The first touch may lie between the middles of pieces.
+        if (ring.removal && !pair_.options.gap) least = std::min(least, line.least_gap);
         for (Segment& s : line.segments) {
           s.gap += unloaded_gap(ring, s);
           places_.push_back(s);
@@ -42,7 +46,6 @@ class PositionProblem {
         ++line_number;
       }
     }
-    double least = 1e300;
     for (const auto& s : places_) least = std::min(least, s.gap);
     for (auto& s : places_) s.gap -= least;  // the first touch is the zero of the approach
     smooth_ = smooth_part();
@@ -112,7 +115,7 @@ class PositionProblem {
 
   [[nodiscard]] double unloaded_gap(const PairRing& ring, const Segment& s) const {
     double gap = pair_.options.gap ? pair_.options.gap(s) : 0;
-    if (pair_.options.moved.none()) return gap;
+    if (pair_.options.moved.none() || ring.removal) return gap;  // the valley of modified flanks knows its own
     const double phi = phi_ + s.tooth * 2 * kPi / pair_.pinion_teeth;
     const auto place = ring.moved.place(s.nearest);
     if (!(place.radius > ring.moved.r_b)) return gap;
@@ -286,6 +289,8 @@ Result<LoadedPair> make_loaded_pair(const face_gear::FaceGear& gear, int side, i
 }
 
 Result<LoadedPosition> loaded_position(const LoadedPair& pair, const Load& load, double phi) {
+  if (!(load.torque_nmm > 0) || !std::isfinite(load.torque_nmm))
+    return fail("torque = {:g} N m on the gear is not above 0", load.torque_nmm / 1000);
   if (pair.options.cells || pair.pinion_teeth != pair.shaper_teeth)
     return cell_position(FaceFlanks(pair, load.torque_nmm / pair.lever, phi), load, phi);
   PositionProblem problem(pair, load, phi);

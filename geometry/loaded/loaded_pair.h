@@ -18,7 +18,8 @@ struct PairOptions {
   double segment_mm = 1.5;
   double pinion_fillet_mm = 1.2;
   contact::Misalignment moved;
-  /// What flank modifications leave between the flanks at a place, mm, added to that of the misalignment; may be empty.
+  /// What else stands between the flanks, mean over a segment, mm: deviations of cut flanks; may be empty.
+  /// What modifications take off belongs into `PairRing::removal`: it moves and bends the lines.
   std::function<double(const Segment&)> gap;
   /// Pressures on cells and not on strips along lines, also for a pinion of as many teeth as the shaper.
   bool cells = false;
@@ -30,6 +31,7 @@ struct PairRing {
   face_gear::FaceGearSurface<double> surface;
   ContactBounds bounds;
   contact::Pinion<double> moved;    ///< the pinion as it stands
+  Removal removal{};                ///< by modifications of gear and pinion, where the pinion stands as `moved`
   FreeEnds gear_ends, pinion_ends;  ///< in the housing
   ToothBody gear, pinion;
 };
@@ -94,7 +96,7 @@ struct LoadedCycle {
 };
 
 /// @param phi  turn of the shaper that stands where the gear does; a pitch is 2 pi/N_s
-/// Refused: no pair touches at some position; a load that does not settle.
+/// Refused: a torque that is not above 0; no pair touches at some position; a load that does not settle.
 [[nodiscard]] Result<LoadedPosition> loaded_position(const LoadedPair& pair, const Load& load, double phi);
 /// Positions 0 .. positions - 1 of a pitch, in parallel. Refused: as the first position that is.
 [[nodiscard]] Result<std::vector<LoadedPosition>> positions_over(

@@ -6,8 +6,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <regex>
 #include <sstream>
 
+#include "geometry/elastic/brick_stress.h"
 #include "geometry/loaded/ccx_deck.h"
 #include "geometry/loaded_bevel/bevel_body.h"
 #include "geometry/loaded_bevel/bevel_deck.h"
@@ -19,14 +22,31 @@ namespace {
 
 bool ccx_is_there() { return std::system("command -v ccx > /dev/null 2>&1") == 0; }
 
-/// Runs a deck in a directory of its own; the numbers of the .dat file, a node and three values a line.
-std::vector<std::pair<int, Vec3>> run_ccx(const std::string& deck, const std::string& name) {
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// What CalculiX writes: printed numbers, and fields at nodes.
+struct CcxResults {
+  std::string dat, frd;
+};
+
+/// Runs a deck in a directory of its own.
+CcxResults run_deck(const std::string& deck, const std::string& name) {
   const auto dir = std::filesystem::temp_directory_path() / ("toothpath_ccx_" + name + std::to_string(::getpid()));
   std::filesystem::create_directories(dir);
   std::ofstream(dir / "deck.inp") << deck;
   const std::string command = "cd '" + dir.string() + "' && OMP_NUM_THREADS=1 ccx -i deck > ccx.log 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << "see " << dir;
-  std::ifstream in(dir / "deck.dat");
+  CcxResults out{text_of(dir / "deck.dat"), text_of(dir / "deck.frd")};
+  std::filesystem::remove_all(dir);
+  return out;
+}
+
+/// The numbers of the .dat file, a node and three values a line.
+std::vector<std::pair<int, Vec3>> run_ccx(const std::string& deck, const std::string& name) {
+  std::istringstream in(run_deck(deck, name).dat);
   std::vector<std::pair<int, Vec3>> out;
   std::string line;
   while (std::getline(in, line)) {
@@ -35,7 +55,36 @@ std::vector<std::pair<int, Vec3>> run_ccx(const std::string& deck, const std::st
     Vec3 v;
     if (words >> node >> v.x() >> v.y() >> v.z()) out.emplace_back(node, v);
   }
-  std::filesystem::remove_all(dir);
+  return out;
+}
+
+/// Stress at integration points, in their order, of every brick: xx, yy, zz, xy, xz, yz in the .dat file.
+std::vector<std::vector<elastic::Stress>> stress_at_points(const std::string& dat) {
+  std::vector<std::vector<elastic::Stress>> out;
+  std::istringstream in(dat);
+  std::string line;
+  while (std::getline(in, line)) {
+    std::istringstream words(line);
+    std::size_t brick = 0, point = 0;
+    elastic::Stress s;
+    if (!(words >> brick >> point >> s(0) >> s(1) >> s(2) >> s(3) >> s(5) >> s(4))) continue;
+    if (out.size() < brick) out.resize(brick);
+    out[brick - 1].push_back(s);
+  }
+  return out;
+}
+
+/// Stress at nodes of the .frd file, six fields of twelve characters: xx, yy, zz, xy, yz, zx.
+std::vector<elastic::Stress> stress_at_nodes(const std::string& frd, std::size_t nodes) {
+  std::vector<elastic::Stress> out(nodes, elastic::Stress::Zero());
+  std::istringstream in(frd.substr(frd.find("STRESS")));
+  std::string line;
+  while (std::getline(in, line) && line.compare(0, 3, " -3") != 0) {
+    if (line.compare(0, 3, " -1") != 0) continue;
+    const auto node = static_cast<std::size_t>(std::stoi(line.substr(3, 10)));
+    for (std::size_t k = 0; k < 6; ++k)
+      out.at(node - 1)(static_cast<Eigen::Index>(k)) = std::stod(line.substr(13 + 12 * k, 12));
+  }
   return out;
 }
 
@@ -87,6 +136,78 @@ TEST(CalculiX, AgreesOnTheBodies) {
       worst = std::max(worst, std::abs(theirs - ours)), largest = std::max(largest, std::abs(ours));
     }
     EXPECT_LT(worst, 1e-6 * largest);
+  }
+}
+
+/// A stress in the frame of the row, seen from its tooth.
+elastic::Stress turned_back(const elastic::Stress& x, const Mat3& turn) {
+  Mat3 m;
+  m << x(0), x(3), x(5), x(3), x(1), x(4), x(5), x(4), x(2);
+  m = turn.transpose() * m * turn;
+  return (elastic::Stress() << m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(1, 2), m(2, 0)).finished();
+}
+
+/// Largest difference at the integration points of the middle tooth's bricks, part of the largest stress.
+double worst_at_points(const elastic::Sector& s, const Eigen::VectorXd& u,
+                       const std::vector<std::vector<elastic::Stress>>& theirs) {
+  const auto& rule = elastic::gauss_rule(3);
+  double worst = 0, largest = 0;
+  for (std::size_t b = 0; b < s.bricks.size(); ++b) {
+    elastic::BrickNodes x;
+    Eigen::VectorXd of_brick(60);
+    for (std::size_t n = 0; n < elastic::kBrickNodes; ++n) {
+      x.col(static_cast<Eigen::Index>(n)) = s.nodes[static_cast<std::size_t>(s.bricks[b][n])];
+      of_brick.segment<3>(static_cast<Eigen::Index>(3 * n)) = u.segment<3>(3 * s.bricks[b][n]);
+    }
+    const auto& of_tooth = theirs.at(s.bricks.size() + b);
+    EXPECT_EQ(of_tooth.size(), 27u);
+    for (std::size_t k = 0; k < of_tooth.size(); ++k) {
+      const elastic::Stress ours =
+          elastic::brick_stress(x, 0.3, rule.x[k % 3], rule.x[k / 3 % 3], rule.x[k / 9]) * of_brick;
+      worst = std::max(worst, (ours - turned_back(of_tooth[k], s.pitch)).cwiseAbs().maxCoeff());
+      largest = std::max(largest, ours.cwiseAbs().maxCoeff());
+    }
+  }
+  return worst / largest;
+}
+
+/// The same bricks, the same hat: stress at the integration points, and at the nodes of the fillet.
+TEST(CalculiX, AgreesOnTheStress) {
+  ASSERT_TRUE(ccx_is_there()) << "calculix-ccx is not installed; tools/packages.sh names it";
+  const auto gear = trial_gear();
+  const auto& ring = gear.rings()[1];
+  elastic::SectorPlan plan;
+  plan.across = 4, plan.flank = 3, plan.fillet = 6, plan.face = 4, plan.rim = 2, plan.grading = 2;
+  const auto pinion = contact::make_pinion(ring.surface, 30);
+  const auto profile = loaded::pinion_profile(pinion, ring.surface.shaper.h_f, 1.2);
+  const auto on_gear = loaded::gear_bricks(ring.surface, 1, ring.zone.inner_radius_mm, ring.zone.outer_radius_mm, plan);
+  const auto on_pinion = loaded::pinion_bricks(pinion, profile, 1, 551, 584, plan);
+  for (const auto* body : {&on_gear, &on_pinion}) {
+    ASSERT_TRUE(*body);
+    const elastic::Sector& s = (*body)->sector;
+    const auto fields = elastic::tooth_fields(s, 0.3, 3);
+    ASSERT_TRUE(fields);
+    const int station = s.columns + 1;
+    const auto row = elastic::sector_row(s, 3);
+    const auto found = run_deck(std::regex_replace(loaded::hat_deck(s, 0.3, 3, station), std::regex("\\*END STEP"),
+                                                   "*EL PRINT, ELSET=BODY\nS\n*EL FILE\nS\n*END STEP"),
+                                "stress");
+    const auto at_points = stress_at_points(found.dat);
+    ASSERT_EQ(at_points.size(), row.bricks.size());
+    EXPECT_LT(worst_at_points(s, fields->at_offset[1].col(station), at_points), 1e-5) << "printed with seven digits";
+    // At nodes both extrapolate, from 2^3 points and from 3^3.
+    const auto nodes = elastic::fillet_nodes(s);
+    const auto stress = elastic::hat_stress(s, 0.3, *fields, nodes);
+    const auto theirs = stress_at_nodes(found.frd, row.nodes.size());
+    double most_ours = 0, most_theirs = 0;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      most_ours = std::max(most_ours, elastic::largest_principal(
+                                          stress.at_offset[1].block<6, 1>(static_cast<Eigen::Index>(6 * n), station)));
+      most_theirs = std::max(most_theirs,
+                             elastic::largest_principal(
+                                 theirs[static_cast<std::size_t>(row.node_of[1][static_cast<std::size_t>(nodes[n])])]));
+    }
+    EXPECT_NEAR(most_ours, most_theirs, 0.05 * most_theirs);
   }
 }
 

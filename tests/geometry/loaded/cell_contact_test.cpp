@@ -157,6 +157,18 @@ TEST(CellContact, TwoWindowsShareLikeBruteForce) {
   }
 }
 
+TEST(CellContact, OneCellCarriesAll) {
+  CellProblem problem;
+  problem.windows = {paraboloid(0.1, 0.1, 0.3, 0.2, 1, 1, 0.001)};
+  problem.compliance = kCompliance;
+  problem.force = 50;
+  const auto found = loaded::press_cells(problem);
+  ASSERT_TRUE(found) << found.error().message;
+  EXPECT_NEAR(found->pressure[0], 50 / (0.6 * 0.4), 1e-9);
+  EXPECT_NEAR(found->approach, 0.001 + kCompliance * 50 / (0.6 * 0.4) * loaded::rectangle_influence(0, 0, 0.3, 0.2),
+              1e-12);
+}
+
 TEST(CellContact, RefusesWhatCannotPress) {
   CellProblem problem;
   problem.windows = {paraboloid(0.1, 0.1, 1, 1, 4, 4)};
