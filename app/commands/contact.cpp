@@ -15,8 +15,9 @@
 namespace toothpath::commands {
 namespace {
 
-const std::vector<std::string> kContactOutputs = {"contact.csv",  "ease_off.csv", "transmission.csv", "contact.json",
-                                                  "contact.html", "loaded.csv",   "pressure.csv"};
+const std::vector<std::string> kContactOutputs = {"contact.csv",  "ease_off.csv",   "transmission.csv",
+                                                  "contact.json", "contact.html",   "loaded.csv",
+                                                  "pressure.csv", "root_stress.csv"};
 
 const std::vector<std::string> kDecks = {"ring_0_flank_plus.inp", "ring_0_flank_minus.inp", "ring_1_flank_plus.inp",
                                          "ring_1_flank_minus.inp"};

@@ -91,6 +91,8 @@ struct ContactLoad {
   std::optional<double> segment_mm;  ///< none: 0.3 m
   std::optional<double> rim_mm;      ///< none: 5 m
   double edge_radius_mm = 0;         ///< rounding of the edges of the teeth; 0: not stated
+  std::optional<double> friction;    ///< coefficient; none: nothing is said of friction
+  bool root_stress = false;          ///< stress of the fillets, too
 };
 /// What the torque of [contact.load] and of `contact --torque`, and the positions may be.
 inline constexpr toml::Range kContactTorque{1e-6, 1e9, " N m"}, kContactPositions{1, 200};

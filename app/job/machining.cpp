@@ -327,7 +327,7 @@ shaper::Shaping read_shaping(toml::TableReader& table) {
 
 namespace {
 
-ContactLoad read_contact_load(toml::TableReader& table) {
+ContactLoad read_contact_load(toml::TableReader& table, const Job& job) {
   ContactLoad load;
   load.torque_Nm = table.number("torque", kContactTorque).value_or(1);
   load.on_pinion = table.word_or("torque_on", {"gear", "pinion"}, "gear") == "pinion";
@@ -350,6 +350,19 @@ ContactLoad read_contact_load(toml::TableReader& table) {
   load.segment_mm = table.optional_number("segment", {0.01, 100, " mm"});
   load.rim_mm = table.optional_number("rim", {0.01, 1000, " mm"});
   load.edge_radius_mm = table.optional_number("edge_radius", {1e-3, 10, " mm"}).value_or(load.edge_radius_mm);
+  if (const auto* gear = job.face_gear()) {
+    load.friction = table.optional_number("friction", {0, 1});
+    load.root_stress = table.boolean_or("root_stress", load.root_stress);
+    if (load.root_stress && !(gear->shaper_tip_radius_mm > 0))
+      table.refuse(
+          "root_stress",
+          "root_stress = true with shaper_tip_radius = {:g} mm: a fillet without a radius has no finite stress",
+          gear->shaper_tip_radius_mm);
+  } else {
+    for (const char* key : {"friction", "root_stress"})
+      if (table.misplaced(key))
+        table.refuse(key, "{} is computed for face gears and their pinions; this gear is {}", key, job.gear_type());
+  }
   table.finish();
   return load;
 }
@@ -388,7 +401,7 @@ ContactSettings read_contact(toml::TableReader& table, const Job& job) {
                  "own: [[gear.modification]] there, and --mate",
                  job.gear_type());
   if (auto box = table.table("misalignment")) c.box = read_misalignment(*box);
-  if (auto load = table.table("load")) c.load = read_contact_load(*load);
+  if (auto load = table.table("load")) c.load = read_contact_load(*load, job);
   table.finish();
   return c;
 }

@@ -248,6 +248,10 @@ constexpr Meaning kJobMeanings[] = {
     {"contact.load.rim", "Thickness of the rim below the root, clamped at its back; left out: 5 times the module."},
     {"contact.load.edge_radius",
      "Rounding of the edges of the teeth: gives the pressure where an edge carries; left out: it is undefined."},
+    {"contact.load.friction",
+     "Coefficient of friction: what it could add to axial force and torque, beside results without friction."},
+    {"contact.load.root_stress",
+     "The largest stress in the fillets of gear and pinion, too; needs a `shaper_tip_radius` above 0."},
     {"load", "Load of the gear; only forces are computed from it."},
     {"load.torque", "Torque on the gear."},
 };

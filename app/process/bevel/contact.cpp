@@ -163,7 +163,7 @@ std::string page_of(const PairAnalysis& a) {
   if (a.loaded) {
     page.introduction.push_back(under_load::loaded_introduction(*a.loaded));
     for (const auto& note : a.loaded->notes) page.introduction.push_back(note);
-    page.tables.push_back(under_load::loaded_table(*a.loaded));
+    for (auto& table : under_load::loaded_tables(*a.loaded)) page.tables.push_back(std::move(table));
     for (auto& chart : under_load::loaded_charts(*a.loaded)) page.charts.push_back(std::move(chart));
   }
   add_to_page(page, a.ease_off);

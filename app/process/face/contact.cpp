@@ -42,7 +42,7 @@ std::string contact_page(const ContactAnalysis& a) {
   if (a.loaded) {
     page.introduction.push_back(under_load::loaded_introduction(*a.loaded));
     for (const auto& note : a.loaded->notes) page.introduction.push_back(note);
-    page.tables.push_back(under_load::loaded_table(*a.loaded));
+    for (auto& table : under_load::loaded_tables(*a.loaded)) page.tables.push_back(std::move(table));
     for (auto& chart : under_load::loaded_charts(*a.loaded)) page.charts.push_back(std::move(chart));
   }
   return study_page_html(page);
@@ -94,6 +94,8 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   if (analysis.loaded) {
     found.files.emplace_back("loaded.csv", under_load::loaded_csv(*analysis.loaded));
     found.files.emplace_back("pressure.csv", under_load::pressure_csv(*analysis.loaded));
+    if (analysis.loaded->settings.root_stress)
+      found.files.emplace_back("root_stress.csv", under_load::root_csv(*analysis.loaded));
     if (!asked.ccx_dir.empty()) {
       auto decks = loaded_decks(job, gear, *analysis.loaded);
       if (auto* errors = decks.refused()) return std::move(*errors);

@@ -178,7 +178,7 @@ std::string contact_section_body(const ContactAnalysis& a) {
   std::vector<svg::LineChart> charts = contact_charts(a);
   if (a.loaded) {
     for (const auto& note : a.loaded->notes) out += "<p class=\"note\">" + svg::html_escape(note) + "</p>\n";
-    tables.push_back(under_load::loaded_table(*a.loaded));
+    for (auto& table : under_load::loaded_tables(*a.loaded)) tables.push_back(std::move(table));
     for (auto& chart : under_load::loaded_charts(*a.loaded)) charts.push_back(std::move(chart));
   }
   for (const auto& t : tables) {

@@ -48,25 +48,15 @@ double gap_of_cut(const std::vector<const contact::ContactFlank*>& flanks, const
   return 0;
 }
 
-/// What modifications take off gear and pinion opens the gap: mean over the piece of a line.
-double gap_of_modifications(const std::vector<const contact::ContactMember*>& members, const loaded::Segment& s) {
+/// What modifications take off gear and pinion at a place of the housing.
+double removed_at(const contact::ContactMember& member, const Vec3& p) {
   double sum = 0;
-  for (const auto* one : members) {
-    const contact::ContactMember& member = *one;
-    if (member.flank.zone != s.ring) continue;
-    constexpr int kPlaces = 9;
-    for (int k = 0; k < kPlaces; ++k) {
-      const Vec3 p = s.nearest + s.along * (s.length * ((k + 0.5) / kPlaces - 0.5));
-      if (member.flank.modified)
-        if (const auto* drawn = member.flank.modified->field(member.flank.side).drawn)
-          sum += drawn->removal(face_gear::FlankField::depth<double>(member.flank.surface, p, radius(p)), radius(p)) /
-                 kPlaces;
-      if (!member.on_pinion) continue;
-      const auto place = member.pinion.place(p);
-      sum += member.on_pinion->removal(member.pinion.r_a - place.radius, place.Z) / kPlaces;
-    }
-  }
-  return sum;
+  if (member.flank.modified)
+    if (const auto* drawn = member.flank.modified->field(member.flank.side).drawn)
+      sum += drawn->removal(face_gear::FlankField::depth<double>(member.flank.surface, p, radius(p)), radius(p));
+  if (!member.on_pinion) return sum;
+  const auto place = member.pinion.place(p);
+  return sum + member.on_pinion->removal(member.pinion.r_a - place.radius, place.Z);
 }
 
 /// Options of the pair for a gear of this module. Refused: a rim that does not fit the gear.
@@ -85,6 +75,24 @@ Result<loaded::PairOptions> pair_options(const job::ContactLoad& load, const fac
   options.moved = moved;
   options.edge_radius_mm = load.edge_radius_mm;
   return options;
+}
+
+/// One flank over a pitch, with what else the job asks of it.
+Result<under_load::LoadedSide> loaded_side(const loaded::LoadedPair& pair, const loaded::Load& carried, bool as_cut,
+                                           const job::ContactLoad& asked) {
+  auto cycle = loaded::loaded_cycle(pair, carried);
+  if (!cycle) return cycle.error();
+  under_load::LoadedSide out{pair.side, fmt::format("flank {:+}, {}", pair.side, as_cut ? "as cut" : "exact"), as_cut,
+                             std::move(*cycle)};
+  if (asked.friction)
+    for (const auto& position : out.cycle.positions)
+      out.friction.push_back(loaded::friction_of(pair, position, *asked.friction));
+  if (asked.root_stress) {
+    auto root = loaded::root_stress(pair, out.cycle);
+    if (!root) return root.error();
+    out.root = *root;
+  }
+  return out;
 }
 
 }  // namespace
@@ -112,31 +120,29 @@ process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(
   if (!options) return std::vector{process::located(job, "contact.load.rim", options.error())};
   found.segment_mm = options->segment_mm;
   found.rim_mm = options->gear.bricks.rim_mm;
+  found.pinion_fillet_mm = options->pinion_fillet_mm;
   const char* teeth_key = settings.pinion_teeth > 0 ? "contact.pinion_teeth" : "gear.mate_teeth";
   const loaded::Load carried = under_load::load_of(found, found.torque_gear_Nm);
   for (const int side : {1, -1}) {
     auto pair = loaded::make_loaded_pair(gear, side, pinion_teeth, *options);
     if (!pair) return std::vector{process::located(job, teeth_key, pair.error())};
-    std::vector<const contact::ContactMember*> modified;
     for (const auto* member : exact)
-      if (member->flank.side == side && member->modified()) modified.push_back(member);
-    if (!modified.empty())
-      pair->options.gap = [&modified](const loaded::Segment& s) { return gap_of_modifications(modified, s); };
-    auto cycle = loaded::loaded_cycle(*pair, carried);
-    if (!cycle) return std::vector{process::located(job, "contact.load", cycle.error())};
-    under_load::add_side(found, {side, fmt::format("flank {:+}, exact", side), false, std::move(*cycle)},
-                         under_load::is_steel(load));
+      if (member->flank.side == side && member->modified())
+        pair->rings[static_cast<std::size_t>(member->flank.zone)].removal = [member](const Vec3& at) {
+          return removed_at(*member, at);
+        };
+    auto drawn = loaded_side(*pair, carried, false, load);
+    if (!drawn) return std::vector{process::located(job, "contact.load", drawn.error())};
+    under_load::add_side(found, std::move(*drawn), under_load::is_steel(load));
     std::vector<const contact::ContactFlank*> of_side;
     for (const auto* flank : cut)
       if (flank->side == side) of_side.push_back(flank);
     if (of_side.empty()) continue;
     loaded::LoadedPair rough = *pair;
-    rough.options.gap = [&](const loaded::Segment& s) {
-      return gap_of_cut(of_side, s) + gap_of_modifications(modified, s);
-    };
-    auto worn = loaded::loaded_cycle(rough, carried);
+    rough.options.gap = [&](const loaded::Segment& s) { return gap_of_cut(of_side, s); };
+    auto worn = loaded_side(rough, carried, true, load);
     if (!worn) return std::vector{process::located(job, "contact.load", worn.error())};
-    under_load::add_side(found, {side, fmt::format("flank {:+}, as cut", side), true, std::move(*worn)}, false);
+    under_load::add_side(found, std::move(*worn), false);
   }
   return found;
 }

@@ -11,11 +11,11 @@
 
 namespace toothpath::face {
 
-/// @param exact  the flanks of the drawing: what modifications take off them and off the pinion, mean over each piece
-/// of a line, is its gap
-/// @param cut    flanks as they were cut, beside them; their deviation counts in the same way. Refused, where the key
-/// stands: a rim that does not fit, a pinion that floats on one ring, a position
-/// where nothing touches.
+/// @param exact  the flanks of the drawing: what modifications take off them and off the pinion moves and bends the
+/// lines
+/// @param cut    flanks as they were cut, beside them; their deviation, mean over each piece of a line, is a gap.
+/// Refused, where the key stands: a rim that does not fit, a pinion that floats on one ring, a position where nothing
+/// touches.
 [[nodiscard]] process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(
     const job::Job& job, const face_gear::FaceGear& gear, const job::ContactSettings& settings, int pinion_teeth,
     const std::vector<const contact::ContactMember*>& exact, const std::vector<const contact::ContactFlank*>& cut);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/units.h"
+#include "app/process/under_load/asked_besides.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::under_load {
@@ -125,17 +126,21 @@ std::string loaded_csv(const LoadedContact& found) {
       "surface,flank,position,phi_1_deg,approach_um,error_urad,stiffness_N_um,tangent_N_um,line_mm,pairs,outer_share,"
       "axial_N,"
       "pressure_MPa,end_pressure_MPa,end_line_load_N_mm,shift_um,gear_axial_N,edge_pressure_MPa,"
-      "gear_torque_Nm,pinion_torque_Nm\n";
+      "gear_torque_Nm,pinion_torque_Nm";
+  out += found.settings.friction ? ",friction_axial_N,friction_torque_percent\n" : "\n";
   for (const auto& side : found.sides)
     for (std::size_t k = 0; k < side.cycle.positions.size(); ++k) {
       const LoadedPosition& p = side.cycle.positions[k];
       out += fmt::format(
           "{},{},{},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{:.4f},{},{:.6f},{:.4f},{:.3f},{:.3f},{:.3f},{:.6f},{:.4f},{:."
-          "3f},{:.6f},{:.6f}\n",
+          "3f},{:.6f},{:.6f}",
           surface_of(side), side.side, k, degrees(p.phi), p.approach_mm * app::kUm, p.error_rad * app::kMicro,
           p.stiffness / app::kUm, p.tangent / app::kUm, p.line_mm, p.pairs, outer_share(p), p.axial_n, p.pressure,
           p.end_pressure, p.end_line_load, p.shift_mm * app::kUm, p.gear_axial_n, p.edge_pressure,
           p.gear_torque_nmm / 1000, p.pinion_torque_nmm / 1000);
+      if (!side.friction.empty())
+        out += fmt::format(",{:.4f},{:.5f}", side.friction[k].axial_n, 100 * side.friction[k].torque_part);
+      out += "\n";
     }
   return out;
 }
@@ -196,6 +201,7 @@ nlohmann::ordered_json loaded_json(const LoadedContact& found) {
          {"end_line_load_N_mm", range([](const LoadedPosition& p) { return p.end_line_load; })}});
     if (found.settings.edge_radius_mm > 0)
       json["flanks"].back()["edge_pressure_MPa"] = range([](const LoadedPosition& p) { return p.edge_pressure; });
+    add_besides(json["flanks"].back(), found, side);
   }
   json["notes"] = found.notes;
   return json;

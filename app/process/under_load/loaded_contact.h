@@ -2,11 +2,14 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/job/job.h"
+#include "geometry/loaded/friction.h"
 #include "geometry/loaded/loaded_pair.h"
+#include "geometry/loaded/root_stress.h"
 
 namespace toothpath::under_load {
 
@@ -25,6 +28,8 @@ struct LoadedSide {
   std::string name;     ///< "flank +1, exact", "wall L"
   bool as_cut = false;  ///< with the deviation of the cut flank as gap
   loaded::LoadedCycle cycle;
+  std::vector<loaded::Friction> friction = {};  ///< of every position, where the job asks for it
+  std::optional<loaded::RootStress> root = {};  ///< where the job asks for it
 };
 
 struct LoadedContact {
@@ -34,6 +39,7 @@ struct LoadedContact {
   bool floating = false;
   double segment_mm = 0;  ///< of lines; 0: there are none
   double rim_mm = 0, pinion_rim_mm = 0;
+  double pinion_fillet_mm = 0;  ///< of face gears
   int rings = 1, pinion_teeth = 0;
   std::vector<LoadedSide> sides;  ///< +1, -1, each exact, then as cut
   std::vector<std::string> notes;

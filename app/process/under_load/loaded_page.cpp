@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/base/units.h"
+#include "app/process/under_load/asked_besides.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::under_load {
@@ -84,6 +85,7 @@ std::string loaded_summary(const LoadedContact& found) {
     else out += fmt::format("    axial force {:.1f} to {:.1f} N\n", axial.least, axial.most);
     out += fmt::format("    axial force on the {} {:.1f} to {:.1f} N\n", found.words.gear, gear_axial.least,
                        gear_axial.most);
+    out += besides_summary(found, side);
   }
   for (const auto& note : found.notes) out += "  note: " + note + "\n";
   return out;
@@ -96,6 +98,8 @@ std::string loaded_introduction(const LoadedContact& found) {
       "the first touch of the unloaded flanks is the zero of approach and transmission error.",
       found.torque_gear_Nm, found.words.gear, found.floating ? "floats" : "is held", found.words.ring);
 }
+
+namespace {
 
 page::PageTable loaded_table(const LoadedContact& found) {
   page::PageTable t{
@@ -123,6 +127,14 @@ page::PageTable loaded_table(const LoadedContact& found) {
       found.rim_mm, found.settings.row_teeth);
   for (const auto& side : found.sides) t.rows.push_back(row_of(found, side));
   return t;
+}
+
+}  // namespace
+
+std::vector<page::PageTable> loaded_tables(const LoadedContact& found) {
+  std::vector<page::PageTable> tables = {loaded_table(found)};
+  for (auto& table : besides_tables(found)) tables.push_back(std::move(table));
+  return tables;
 }
 
 std::vector<svg::LineChart> loaded_charts(const LoadedContact& found) {

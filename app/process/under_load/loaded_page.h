@@ -12,7 +12,8 @@ namespace toothpath::under_load {
 [[nodiscard]] std::string loaded_summary(const LoadedContact& found);
 /// What was loaded and how, for the head of a page.
 [[nodiscard]] std::string loaded_introduction(const LoadedContact& found);
-[[nodiscard]] page::PageTable loaded_table(const LoadedContact& found);
+/// The pair itself, and what the job asks for besides.
+[[nodiscard]] std::vector<page::PageTable> loaded_tables(const LoadedContact& found);
 [[nodiscard]] std::vector<svg::LineChart> loaded_charts(const LoadedContact& found);
 
 }  // namespace toothpath::under_load
