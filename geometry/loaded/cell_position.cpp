@@ -13,11 +13,12 @@ namespace toothpath::loaded {
 namespace {
 
 constexpr int kColumns = 48, kRows = 64;
-constexpr int kCoarse = 2;       // cells of a side that are one while windows are fitted
-constexpr double kIdle = 1.2;    // approaches: flanks farther apart do not touch when others do
-constexpr double kMargin = 1.3;  // windows reach so far beyond what presses
-constexpr double kLoose = 2.2;   // a window so much wider than what presses is drawn together
-constexpr int kMostFits = 24;    // rounds of fitting the windows
+constexpr int kCoarse = 2;          // cells of a side that are one while windows are fitted
+constexpr double kIdle = 1.2;       // approaches: flanks farther apart do not touch when others do
+constexpr double kMargin = 1.3;     // windows reach so far beyond what presses
+constexpr double kLoose = 2.2;      // a window so much wider than what presses is drawn together
+constexpr double kSmallest = 1e-4;  // mm: windows are not drawn together around less, as at a corner of stiff teeth
+constexpr int kMostFits = 24;       // rounds of fitting the windows
 
 /// The window of one tooth.
 struct ToothWindow {
@@ -236,7 +237,8 @@ class Cells {
         }
       at += c.size();
       if (to_x < 0) continue;  // nothing presses here
-      const double wide = (to_x - from_x + 1) * c.dx, high = (to_y - from_y + 1) * c.dy;
+      const double wide = std::max((to_x - from_x + 1) * c.dx, kSmallest),
+                   high = std::max((to_y - from_y + 1) * c.dy, kSmallest);
       if (!rim && (only_rim || (2 * site.half_x < kLoose * wide && 2 * site.half_y < kLoose * high))) continue;
       site.x += (from_x + to_x + 1) * c.dx / 2 - site.half_x, site.y += (from_y + to_y + 1) * c.dy / 2 - site.half_y;
       const double grow = rim ? 2 * kMargin : kMargin;

@@ -111,7 +111,7 @@ TEST(BevelFlanks, KnowTheirPlacesAndLevers) {
     double first = 1e300;
     int near = 0;
     for (const auto& site : flanks.sites()) {
-      constexpr int kColumns = 40, kRows = 60;
+      constexpr int kColumns = 60, kRows = 90;
       const auto places = flanks.places(site, kColumns, kRows);
       ASSERT_EQ(places.size(), static_cast<std::size_t>(kColumns * kRows));
       const double turn_2 = phi_2 + site.tooth * pair.pair.wheel().pitch();
