@@ -148,8 +148,7 @@ TEST(LoadedCommand, RefusesLoadsThatItDoesNotCompute) {
                           "[contact.load]\ntorque = 1\n" + load + "\n\n[machine]");
   };
   refused(bevel("friction = 0.1"), "friction is computed for face gears", mated);
-  refused(bevel("rim = 60"), "rim = 60 mm is not between half the module", mated);
-  refused(bevel("positions = 1"), "the flanks approach by", {mated[0], mated[1], "--torque", "1e6"});
+  refused(bevel("rim = 150"), "rim = 150 mm is not between half the module", mated);
   refused(kSamples + "/offset_shaped.toml", "--ccx is for a pinion of as many teeth as the shaper",
           {"--pinion-teeth", "23", "--positions", "1", "--ccx", dir / "decks"});
   const std::string floating = changed_sample(dir, "offset_shaped.toml", "[machine]",
