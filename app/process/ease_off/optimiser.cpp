@@ -71,6 +71,7 @@ class Optimiser {
     options_.unit_mm = 1 / kUnits;
     options_.largest_mm = std::min(kLargest_mm, pair.depth_mm() / 10);
     out_.modify = std::move(modify);
+    out_.table = {&pair.words(), box, options_.margin, options_.compound_mm, pair.pitch_radius_mm(), {}};
     out_.gear = pair.keys_of(false);
     out_.pinion = pair.keys_of(true);
   }
@@ -161,8 +162,7 @@ class Optimiser {
   process::ValueOrErrors<Ok> prove() {
     auto rows = pair_.rolled(out_.found_on, list_, options_.margin);
     if (auto* errors = rows.refused()) return std::move(*errors);
-    out_.table = {&pair_.words(),       settings_.box->most,     options_.margin,
-                  options_.compound_mm, pair_.pitch_radius_mm(), std::move(rows).value()};
+    out_.table.rows = std::move(rows).value();
     out_.error_rad = 0;
     for (const auto& row : out_.table.rows)
       for (const auto& side : row.sides) out_.error_rad = std::max(out_.error_rad, side.error_range_rad);
@@ -187,6 +187,8 @@ class Optimiser {
     if (out_.found && out_.keys.empty())
       return fmt::format("nothing need be taken: the pattern stays inside, transmission error at most {:.4f} um", um);
     const Limit at = limit();
+    if (at.row == nullptr)
+      return fmt::format("the pattern stays inside, no edge is met; transmission error at most {:.4f} um", um);
     const std::string where = fmt::format("{}, {}, at the {}", at.row->at.name, pair_.words().side(at.side),
                                           to_string(at.row->sides[at.side].nearest));
     if (!out_.found)
