@@ -7,7 +7,7 @@ namespace toothpath::test {
 namespace {
 
 class PlantedEdits : public testing::TestWithParam<OutputForm> {};
-INSTANTIATE_TEST_SUITE_P(Forms, PlantedEdits, testing::ValuesIn(forms()), [](const auto& form) {
+INSTANTIATE_TEST_SUITE_P(Forms, PlantedEdits, testing::ValuesIn(planted_forms()), [](const auto& form) {
   std::string name = form.param.name();
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;

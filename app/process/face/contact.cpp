@@ -2,6 +2,7 @@
 
 #include "app/process/face/contact_figures.h"
 #include "app/process/face/searched_pair.h"
+#include "app/process/under_load/asked_besides.h"
 #include "app/process/under_load/loaded_page.h"
 #include "app/process/under_load/settings.h"
 #include "app/report/page/study_page.h"
