@@ -8,6 +8,7 @@
 #include "app/base/new_file.h"
 #include "app/base/units.h"
 #include "app/job/file.h"
+#include "app/job/measured_points.h"
 #include "app/process/flow/cut_flanks.h"
 #include "app/process/flow/stages.h"
 #include "geometry/base/printable.h"
@@ -19,8 +20,9 @@ const std::vector<std::string> kContactOutputs = {"contact.csv",  "ease_off.csv"
                                                   "contact.json", "contact.html",   "loaded.csv",
                                                   "pressure.csv", "root_stress.csv"};
 
-const std::vector<std::string> kDecks = {"ring_0_flank_plus.inp", "ring_0_flank_minus.inp", "ring_1_flank_plus.inp",
-                                         "ring_1_flank_minus.inp"};
+const std::vector<std::string> kDecks = {"ring_0_flank_plus.inp",  "ring_0_flank_minus.inp", "ring_1_flank_plus.inp",
+                                         "ring_1_flank_minus.inp", "half_0_wall_L.inp",      "half_0_wall_U.inp",
+                                         "half_1_wall_L.inp",      "half_1_wall_U.inp"};
 
 /// Rows that resolve the cusps of a finishing operation: several to a pass.
 constexpr int kCutRows = 241, kCutColumns = 33;
@@ -28,6 +30,9 @@ constexpr int kCutRows = 241, kCutColumns = 33;
 /// Options that contradict each other, or a file that is there already.
 Status check_request(const ContactRequest& r) {
   const auto usage = [](std::string message) { return Diagnostic{DiagnosticKind::usage, {}, std::move(message)}; };
+  if (r.as_cut && !r.measured.files.empty())
+    return usage("--as-cut and --measured contradict each other: one surface is rolled beside the exact one");
+  if (r.measured.files.empty() && r.measured.ball_diameter_mm) return usage("--ball-diameter belongs to --measured");
   if (!r.optimise && (!r.modify.empty() || !r.write_file.empty()))
     return usage(fmt::format("{} belongs to --optimise", r.modify.empty() ? "--write" : "--modify"));
   if (!r.modify.empty() && std::find(std::begin(process::kModifiable), std::end(process::kModifiable), r.modify) ==
@@ -57,7 +62,9 @@ CommandOutcome run_contact(const ContactRequest& request) {
   if (const Status fits = check_request(request); !fits) return failed(fits.error());
   app::Progress progress(request.quiet);
   app::StageClock clock(progress);
-  auto output = app::OutputDir::open(request.out_dir, kContactOutputs, {request.job_file, request.other_job});
+  std::vector<std::string> read_files = request.measured.files;
+  read_files.insert(read_files.end(), {request.job_file, request.other_job});
+  auto output = app::OutputDir::open(request.out_dir, kContactOutputs, read_files);
   if (!output) return failed(output.error());
   auto read = clock.run("job", [&] { return job::read_job_file(request.job_file); });
   if (auto* errors = read.refused()) return failed(std::move(*errors));
@@ -76,7 +83,7 @@ CommandOutcome run_contact(const ContactRequest& request) {
   if (auto* errors = rolled.refused()) return failed(std::move(*errors));
   process::ContactFound found = std::move(rolled).value();
   if (!request.ccx_dir.empty()) {
-    auto decks = app::OutputDir::open(request.ccx_dir, kDecks, {request.job_file, request.other_job});
+    auto decks = app::OutputDir::open(request.ccx_dir, kDecks, read_files);
     if (!decks) return failed(decks.error());
     auto written = process::finished(*decks, found.decks, {});
     if (!written.errors.empty()) return written;
@@ -127,6 +134,11 @@ void add_contact(Commands& commands) {
                  "WHO", process::kModifiable);
         set.text("--write", request.write_file, "with --optimise: the job with what was found, a new file", "JOB.toml");
         set.flag("--as-cut", request.as_cut, "roll the surface that the job cuts, too");
+        set.files("--measured", request.measured.files,
+                  "roll the surface that was measured, too: files as `correct` reads them");
+        set.number("--ball-diameter", request.measured.ball_diameter_mm,
+                   "the measured points are centres of a ball of this diameter, not places of the surface",
+                   job::kBallDiameter);
       },
       run_contact));
 }

@@ -108,12 +108,13 @@ struct ContactAsked {
   std::optional<double> offset_error_mm, angle_error_deg, axial_error_mm, compound_um;
   std::optional<double> wheel_axial_error_mm;  ///< of the gear, or of the wheel of a bevel pair
   std::string other_job;                       ///< bevel gears: the mate
-  std::optional<double> torque_Nm;             ///< face gears: load the pair, too
+  std::optional<double> torque_Nm;             ///< load the pair, too
   bool torque_on_pinion = false;               ///< that torque is the pinion's
   bool pinion_held = false;                    ///< along its axis, where it would float
   std::optional<int> positions;                ///< of the loaded pair over a pitch
   std::string ccx_dir;                         ///< where decks of CalculiX go; empty: none
   bool as_cut = false;                         ///< face gears: the surface that the job's operations cut, too
+  job::MeasuredInput measured = {};            ///< face gears: or the one that was measured
   bool optimise = false;                       ///< seek crownings and reliefs for the box of misalignments
   std::string modify;                          ///< whose flanks they may take: a word of kModifiable; empty: any
   std::string write_file;                      ///< where the job with what was found goes; empty: nowhere

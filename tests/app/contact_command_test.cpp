@@ -106,6 +106,61 @@ TEST(ContactCommand, EaseOff) {
   EXPECT_NE(plain.out.find("ease-off: none, the flanks are conjugate"), std::string::npos) << plain.out;
 }
 
+/// inspection.csv of a job with the deviation of a crowning: all flanks lower by so much at both ends of the face.
+void write_crowned(const TestDir& dir, const std::string& job, double inner, double outer, double amount_um) {
+  ASSERT_EQ(run_program({"surface", job, "--out", dir / "surface"}).exit_code, 0);
+  std::istringstream in(file_text(dir / "surface/inspection.csv"));
+  std::string line, out;
+  std::getline(in, line);
+  out = line + ",deviation_um\n";
+  while (std::getline(in, line)) {
+    std::vector<double> values;
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) values.push_back(std::stod(cell));
+    const double x = 2 * (std::hypot(values.at(4), values.at(5)) - inner) / (outer - inner) - 1;
+    out += line + "," + std::to_string(-amount_um * x * x) + "\n";
+  }
+  write_file(dir / "measured.csv", out);
+}
+
+/// A crowning that was measured is rolled and loaded like one that the drawing asks for.
+TEST(ContactCommand, AMeasuredCrowningRollsLikeTheDrawnOne) {
+  const TestDir dir;
+  const std::string plain = changed_sample(dir, "spur_quick.toml", "[machine]",
+                                           "[contact]\npinion_teeth = 20\nangle_error = 0.02\n\n[machine]");
+  write_crowned(dir, plain, 60, 65, 8);
+  const Json measured = contact_of(
+      {"contact", plain, "--measured", dir / "measured.csv", "--torque", "50", "--positions", "2", "--out", dir / "a"});
+  EXPECT_EQ(measured.at("cut_surface"), "measured");
+  const TestDir other;
+  const std::string crowned = changed_sample(
+      other, "spur_quick.toml", "[machine]",
+      "[[gear.modification]]\nkind = \"lead_crowning\"\namount = 0.008\n\n[contact]\npinion_teeth = 20\nangle_error "
+      "= 0.02\n\n[machine]");
+  const Json drawn = contact_of({"contact", crowned, "--torque", "50", "--positions", "2", "--out", dir / "b"});
+  const auto flank = [](const Json& report, const char* surface, int side) -> const Json& {
+    for (const Json& f : report.at("flanks"))
+      if (f.at("surface") == surface && f.at("side") == side) return f;
+    throw std::invalid_argument("no such flank");
+  };
+  for (const int side : {1, -1}) {
+    const Json &m = flank(measured, "cut", side), &d = flank(drawn, "exact", side);
+    const double error = d.at("transmission_error").at("range_urad").get<double>();
+    EXPECT_GT(error, 1) << "a crowned pair that stands askew has a transmission error";
+    EXPECT_NEAR(m.at("transmission_error").at("range_urad").get<double>(), error, 0.05 * error);
+    const Json &lm = flank(measured.at("loaded"), "cut", side), &ld = flank(drawn.at("loaded"), "exact", side);
+    EXPECT_EQ(lm.at("name"), side > 0 ? "flank +1, measured" : "flank -1, measured");
+    const double approach = ld.at("approach_um").at("mean").get<double>();
+    EXPECT_NEAR(lm.at("approach_um").at("mean").get<double>(), approach, 0.03 * approach);
+  }
+  const auto both = run_program({"contact", plain, "--as-cut", "--measured", dir / "measured.csv", "--out", dir / "c"});
+  EXPECT_EQ(both.exit_code, 2);
+  const auto bevel =
+      run_program({"contact", kSamples + "/bevel_pinion.toml", "--measured", dir / "measured.csv", "--out", dir / "d"});
+  EXPECT_EQ(bevel.exit_code, 3);
+  EXPECT_NE(bevel.err.find("--measured needs a face_gear"), std::string::npos) << bevel.err;
+}
+
 /// A contact run that fails, however it does, leaves what an earlier one wrote as it was and says so, and nothing
 /// half-written; what belongs to others stays.
 TEST(ContactCommand, AFailedRunLeavesEverythingAsItWas) {

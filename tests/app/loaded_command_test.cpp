@@ -99,10 +99,14 @@ TEST(LoadedCommand, BevelPairUnderLoad) {
         "[contact]\noffset_error = 0.01\n[contact.load]\ntorque = 200\npositions = 1\nrow_teeth = 3\n" + load +
             "\n\n[machine]");
   };
-  const auto run = run_program({"contact", job("edge_radius = 0.3"), "--mate", wheel, "--out", out});
+  const auto run =
+      run_program({"contact", job("edge_radius = 0.3"), "--mate", wheel, "--ccx", dir / "decks", "--out", out});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"contact.csv", "contact.html", "contact.json", "ease_off.csv",
                                                      "loaded.csv", "pressure.csv", "transmission.csv"}));
+  EXPECT_EQ(names_in(dir / "decks"), (std::vector<std::string>{"half_0_wall_L.inp", "half_0_wall_U.inp",
+                                                               "half_1_wall_L.inp", "half_1_wall_U.inp"}));
+  EXPECT_NE(file_text(dir / "decks/half_1_wall_U.inp").find("*CONTACT PAIR"), std::string::npos);
   EXPECT_NE(run.out.find("under 200 N m on the wheel, pinion held"), std::string::npos) << run.out;
   EXPECT_NE(run.out.find("edges rounded by 0.3 mm"), std::string::npos) << run.out;
   const Json report = Json::parse(file_text(out + "/contact.json"));
@@ -142,7 +146,6 @@ TEST(LoadedCommand, RefusesLoadsThatItDoesNotCompute) {
     EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
   };
   const std::vector<std::string> mated = {"--mate", kSamples + "/bevel_wheel.toml"};
-  refused(kSamples + "/bevel_pinion.toml", "--ccx needs a face_gear", {"--ccx", dir / "decks"});
   const auto bevel = [&](const std::string& load) {
     return changed_sample(dir, "bevel_pinion.toml", "[machine]",
                           "[contact.load]\ntorque = 1\n" + load + "\n\n[machine]");

@@ -262,6 +262,9 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
                                                         const process::ContactAsked& asked, app::StageClock& clock) {
   PairAnalysis a;
   a.name = job.name;
+  const job::ContactSettings settings = under_load::contact_settings(job, asked);
+  if (!asked.ccx_dir.empty() && !settings.load)
+    return std::vector{fail_at(job.where(""), "--ccx needs a load: --torque or [contact.load]")};
   auto mated = clock.run("mate", [&] { return mate_of(asked, job, gear, a.mate); });
   if (auto* errors = mated.refused()) return std::move(*errors);
   const bevel_gear::BevelGear& mate = mated.value();
@@ -269,7 +272,6 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   const bevel_gear::BevelGear &pinion = a.job_is_pinion ? gear : mate, &wheel = a.job_is_pinion ? mate : gear;
   a.pinion_teeth = pinion.parameters().teeth;
   a.wheel_teeth = wheel.parameters().teeth;
-  const job::ContactSettings settings = under_load::contact_settings(job, asked);
   a.assembly = contact::assembly_of(settings.moved);
   a.compound_mm = settings.compound_mm;
   const auto pair = contact::BevelPair::make(pinion, wheel, a.assembly);
@@ -314,6 +316,11 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
     found.summary += under_load::loaded_summary(*a.loaded);
     found.files.emplace_back("loaded.csv", under_load::loaded_csv(*a.loaded));
     found.files.emplace_back("pressure.csv", under_load::pressure_csv(*a.loaded));
+    if (!asked.ccx_dir.empty()) {
+      auto decks = loaded_decks(job, pinion, wheel, *a.loaded, settings);
+      if (auto* errors = decks.refused()) return std::move(*errors);
+      found.decks = std::move(decks).value();
+    }
   }
   return found;
 }

@@ -5,14 +5,17 @@
 #include "app/job/file.h"
 #include "geometry/contact/bevel_pattern_place.h"
 #include "geometry/loaded_bevel/bevel_body.h"
+#include "geometry/loaded_bevel/bevel_deck.h"
 #include "geometry/loaded_bevel/loaded_bevel_pair.h"
 
 namespace toothpath::bevel {
 namespace {
 
 /// Refused: a rim that does not fit the wheel. That of the pinion is no thicker than the pinion can have.
-Result<loaded_bevel::BevelPairOptions> pair_options(const job::ContactLoad& load, const bevel_gear::BevelGear& pinion,
+Result<loaded_bevel::BevelPairOptions> pair_options(const job::ContactSettings& settings,
+                                                    const bevel_gear::BevelGear& pinion,
                                                     const bevel_gear::BevelGear& wheel) {
+  const job::ContactLoad& load = settings.load.value();
   const double m = wheel.parameters().outer_transverse_module_mm, thickest = loaded_bevel::thickest_rim(wheel),
                rim = load.rim_mm.value_or(std::min(5 * m, thickest));
   if (!(rim >= 0.5 * m) || !(rim <= thickest))
@@ -26,8 +29,11 @@ Result<loaded_bevel::BevelPairOptions> pair_options(const job::ContactLoad& load
   options.pinion.bricks.rim_mm = std::min(rim, loaded_bevel::thickest_rim(pinion));
   options.torque_on_pinion = load.on_pinion;
   options.edge_radius_mm = load.edge_radius_mm;
+  options.moved = contact::assembly_of(settings.moved);
   return options;
 }
+
+const char* wall_of(int sigma) { return sigma > 0 ? "wall L" : "wall U"; }
 
 }  // namespace
 
@@ -49,14 +55,13 @@ process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(const job::Job&
         process::located(job, "contact.load.pinion_axial",
                          fail("pinion_axial = \"floating\" needs two halves of opposite hand: nothing else keeps the "
                               "pinion in its place"))};
-  auto options = pair_options(load, pinion, wheel);
+  const auto options = pair_options(settings, pinion, wheel);
   if (!options) return std::vector{process::located(job, "contact.load.rim", options.error())};
-  options->moved = contact::assembly_of(settings.moved);
   found.rim_mm = options->wheel.bricks.rim_mm, found.pinion_rim_mm = options->pinion.bricks.rim_mm;
   for (const int sigma : {1, -1}) {
     const auto pair = loaded_bevel::make_loaded_bevel_pair(pinion, wheel, sigma, *options);
     if (!pair) return std::vector{process::located(job, "gear", pair.error())};
-    const char* wall = sigma > 0 ? "wall L" : "wall U";
+    const char* wall = wall_of(sigma);
     auto cycle = loaded_bevel::loaded_cycle(*pair, under_load::load_of(found, load.torque_Nm));
     if (!cycle) {
       cycle.error().message = fmt::format("{}: {}", wall, cycle.error().message);
@@ -65,6 +70,31 @@ process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(const job::Job&
     under_load::add_side(found, {sigma, wall, false, std::move(*cycle)}, under_load::is_steel(load));
   }
   return found;
+}
+
+process::ValueOrErrors<process::NamedFiles> loaded_decks(const job::Job& job, const bevel_gear::BevelGear& pinion,
+                                                         const bevel_gear::BevelGear& wheel,
+                                                         const under_load::LoadedContact& found,
+                                                         const job::ContactSettings& settings) {
+  const auto options = pair_options(settings, pinion, wheel);
+  if (!options) return std::vector{process::located(job, "contact.load.rim", options.error())};
+  process::NamedFiles files;
+  for (const auto& side : found.sides) {
+    const auto pair = loaded_bevel::make_loaded_bevel_pair(pinion, wheel, side.side, *options);
+    if (!pair) return std::vector{process::located(job, "gear", pair.error())};
+    loaded_bevel::BevelDeckOptions deck;
+    deck.wheel.rim_mm = options->wheel.bricks.rim_mm, deck.pinion.rim_mm = options->pinion.bricks.rim_mm;
+    deck.teeth = found.settings.row_teeth;
+    deck.phi_1 = side.cycle.positions.front().phi;
+    deck.approach_mm =
+        under_load::range_of(side.cycle, [](const loaded::LoadedPosition& p) { return p.approach_mm; }).mean;
+    for (int half = 0; half < found.rings; ++half) {
+      auto text = loaded_bevel::bevel_deck(*pair, half, deck);
+      if (!text) return std::vector{process::located(job, "gear", text.error())};
+      files.emplace_back(fmt::format("half_{}_wall_{}.inp", half, side.side > 0 ? "L" : "U"), std::move(*text));
+    }
+  }
+  return files;
 }
 
 }  // namespace toothpath::bevel

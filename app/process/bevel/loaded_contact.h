@@ -16,4 +16,12 @@ namespace toothpath::bevel {
                                                                                const bevel_gear::BevelGear& wheel,
                                                                                const job::ContactSettings& settings);
 
+/// Decks of CalculiX at the first position, one a half and wall, the wheel turned by the mean approach. Refused: as
+/// analyse_loaded.
+[[nodiscard]] process::ValueOrErrors<process::NamedFiles> loaded_decks(const job::Job& job,
+                                                                       const bevel_gear::BevelGear& pinion,
+                                                                       const bevel_gear::BevelGear& wheel,
+                                                                       const under_load::LoadedContact& found,
+                                                                       const job::ContactSettings& settings);
+
 }  // namespace toothpath::bevel

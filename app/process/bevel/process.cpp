@@ -214,7 +214,7 @@ class BevelProcess final : public process::GearProcess {
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
     for (const auto& [given, option] : {std::pair(asked.pinion_teeth.has_value(), "--pinion-teeth"),
                                         {asked.as_cut, "--as-cut"},
-                                        {!asked.ccx_dir.empty(), "--ccx"}})
+                                        {!asked.measured.files.empty(), "--measured"}})
       if (given)
         return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs a face_gear", job_.gear_type(), option);
     return Ok{};

@@ -1,5 +1,6 @@
 #include "app/process/face/contact.h"
 
+#include "app/base/units.h"
 #include "app/process/face/contact_figures.h"
 #include "app/process/face/searched_pair.h"
 #include "app/process/under_load/asked_besides.h"
@@ -62,11 +63,46 @@ process::ValueOrErrors<ease_off::Misaligned> misalign(const job::Job& job, const
   return ease_off::misalign(*pair, job, a.settings, asked, modify, clock);
 }
 
+/// The flanks as files of measurements tell of them: the fit of their deviations, on the grid of the roll.
+process::ValueOrErrors<process::CutFlanks> measured_flanks(const face_gear::FaceGear& gear,
+                                                           const job::MeasuredInput& measured) {
+  const auto fitted = job::correct_gear(gear, measured);
+  if (!fitted) return std::vector{fitted.error()};
+  process::CutFlanks out;
+  out.route = "measured";
+  out.warnings = fitted->fit.warnings;
+  for (const auto& f : fitted->fit.flanks)
+    out.warnings.push_back(
+        fmt::format("zone {}, flank {:+}: {} measured places up to {:.2f} um off, met by the fit "
+                    "within {:.2f} um",
+                    f.zone, f.side, f.residual.points, f.residual.measured_max_mm * app::kUm,
+                    f.residual.residual_max_mm * app::kUm));
+  const ContactGrid grid;
+  for (int zone = 0; zone < static_cast<int>(gear.rings().size()); ++zone)
+    for (const int side : {1, -1}) {
+      const auto flank = contact::exact_flank(gear, zone, side, grid.rows, grid.columns);
+      if (!flank) return std::vector{flank.error()};
+      process::CutFlanks::Flank f{zone, side, flank->rows, flank->columns, flank->points, flank->normals, {}};
+      const auto& target = fitted->fit.rings[static_cast<std::size_t>(zone)]->side(side);
+      for (std::size_t k = 0; k < flank->points.size(); ++k)
+        f.deviation_mm.push_back(-target.at(flank->theta[k], radius(flank->points[k])).value);
+      out.flanks.push_back(std::move(f));
+    }
+  return out;
+}
+
 }  // namespace
 
 process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, const face_gear::FaceGear& gear,
                                                         const process::ContactAsked& asked,
                                                         const process::CutFlanks* cut, app::StageClock& clock) {
+  std::optional<process::CutFlanks> measured;
+  if (!asked.measured.files.empty()) {
+    auto read = clock.run("measured", [&] { return measured_flanks(gear, asked.measured); });
+    if (auto* errors = read.refused()) return std::move(*errors);
+    measured = std::move(read).value();
+    cut = &*measured;
+  }
   auto analysed =
       clock.run("contact", [&] { return analyse_contact(job, gear, under_load::contact_settings(job, asked), cut); });
   if (auto* errors = analysed.refused()) return std::move(*errors);
@@ -74,6 +110,7 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   if (cut != nullptr) {
     if (!cut->verified) analysis.notes.push_back("the program of the cut surface is not verified");
     for (const auto& assumed : cut->assumed) analysis.notes.push_back("assumed: " + assumed);
+    if (measured) analysis.notes.insert(analysis.notes.end(), measured->warnings.begin(), measured->warnings.end());
   }
   if (!asked.ccx_dir.empty() && !analysis.loaded)
     return std::vector{fail_at(job.where(""), "--ccx needs a load: --torque or [contact.load]")};

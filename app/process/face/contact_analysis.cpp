@@ -174,7 +174,8 @@ process::ValueOrErrors<ContactAnalysis> with_load(const job::Job& job, const fac
       if (side.as_cut) cut.push_back(&member.flank);
       else exact.push_back(&member);
     }
-  auto loaded = analyse_loaded(job, gear, analysis.settings, analysis.settings.pinion_teeth, exact, cut);
+  auto loaded =
+      analyse_loaded(job, gear, analysis.settings, analysis.settings.pinion_teeth, exact, cut, analysis.route);
   if (auto* errors = loaded.refused()) return std::move(*errors);
   analysis.loaded = std::move(loaded).value();
   return analysis;

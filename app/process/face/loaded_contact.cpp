@@ -78,12 +78,11 @@ Result<loaded::PairOptions> pair_options(const job::ContactLoad& load, const fac
 }
 
 /// One flank over a pitch, with what else the job asks of it.
-Result<under_load::LoadedSide> loaded_side(const loaded::LoadedPair& pair, const loaded::Load& carried, bool as_cut,
-                                           const job::ContactLoad& asked) {
+Result<under_load::LoadedSide> loaded_side(const loaded::LoadedPair& pair, const loaded::Load& carried,
+                                           const char* surface, const job::ContactLoad& asked) {
   auto cycle = loaded::loaded_cycle(pair, carried);
   if (!cycle) return cycle.error();
-  under_load::LoadedSide out{pair.side, fmt::format("flank {:+}, {}", pair.side, as_cut ? "as cut" : "exact"), as_cut,
-                             std::move(*cycle)};
+  under_load::LoadedSide out{pair.side, fmt::format("flank {:+}, {}", pair.side, surface), false, std::move(*cycle)};
   if (asked.friction)
     for (const auto& position : out.cycle.positions)
       out.friction.push_back(loaded::friction_of(pair, position, *asked.friction));
@@ -99,7 +98,8 @@ Result<under_load::LoadedSide> loaded_side(const loaded::LoadedPair& pair, const
 
 process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(
     const job::Job& job, const face_gear::FaceGear& gear, const job::ContactSettings& settings, int pinion_teeth,
-    const std::vector<const contact::ContactMember*>& exact, const std::vector<const contact::ContactFlank*>& cut) {
+    const std::vector<const contact::ContactMember*>& exact, const std::vector<const contact::ContactFlank*>& cut,
+    const std::string& route) {
   under_load::LoadedContact found;
   found.words = under_load::kFaceWords;
   found.settings = settings.load.value();
@@ -131,7 +131,7 @@ process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(
         pair->rings[static_cast<std::size_t>(member->flank.zone)].removal = [member](const Vec3& at) {
           return removed_at(*member, at);
         };
-    auto drawn = loaded_side(*pair, carried, false, load);
+    auto drawn = loaded_side(*pair, carried, "exact", load);
     if (!drawn) return std::vector{process::located(job, "contact.load", drawn.error())};
     under_load::add_side(found, std::move(*drawn), under_load::is_steel(load));
     std::vector<const contact::ContactFlank*> of_side;
@@ -140,8 +140,9 @@ process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(
     if (of_side.empty()) continue;
     loaded::LoadedPair rough = *pair;
     rough.options.gap = [&](const loaded::Segment& s) { return gap_of_cut(of_side, s); };
-    auto worn = loaded_side(rough, carried, true, load);
+    auto worn = loaded_side(rough, carried, route == "measured" ? "measured" : "as cut", load);
     if (!worn) return std::vector{process::located(job, "contact.load", worn.error())};
+    worn->as_cut = true;
     under_load::add_side(found, std::move(*worn), false);
   }
   return found;
