@@ -123,7 +123,7 @@ class NcExecution {
   void switch_coolant(std::string_view word);
   /// A word of the builder that clamps a rotary or releases it. @returns it is one
   bool switch_clamp(std::string_view word);
-  // Work offsets and moved zeros (postproc/readback/zeros.cpp).
+  // Work offsets and moved zeros (postproc/readback/frames.cpp).
   Problem select_offset(const std::string& name);
   /// Writes NcControl::index_offset, which must not be in force. @param at_mm nothing: it stays where it was written
   Problem write_offset(const std::optional<Vec3>& at_mm, double turn_deg);
@@ -174,7 +174,7 @@ class NcExecution {
   /// The zeros of all rotaries are those of the machine.
   Problem clear_zeros();
 
-  // A tilted plane, without TCP (postproc/readback/plane.cpp): words are coordinates in it, their Z along the tool.
+  // A tilted plane, without TCP (postproc/readback/frames.cpp): words are coordinates in it, their Z along the tool.
   /// Which of the two pairs of rotary angles stands the tool upright on a plane: by the angle of the second rotary of
   /// the table, which tilts.
   enum class PlanePair : std::uint8_t { not_below_zero, not_above_zero };
