@@ -4,8 +4,8 @@
 
 #include "app/job/file.h"
 #include "geometry/contact/bevel_pattern_place.h"
+#include "geometry/decks/bevel_deck.h"
 #include "geometry/loaded_bevel/bevel_body.h"
-#include "geometry/loaded_bevel/bevel_deck.h"
 #include "geometry/loaded_bevel/loaded_bevel_pair.h"
 
 namespace toothpath::bevel {
@@ -82,14 +82,14 @@ process::ValueOrErrors<process::NamedFiles> loaded_decks(const job::Job& job, co
   for (const auto& side : found.sides) {
     const auto pair = loaded_bevel::make_loaded_bevel_pair(pinion, wheel, side.side, *options);
     if (!pair) return std::vector{process::located(job, "gear", pair.error())};
-    loaded_bevel::BevelDeckOptions deck;
+    decks::BevelDeckOptions deck;
     deck.wheel.rim_mm = options->wheel.bricks.rim_mm, deck.pinion.rim_mm = options->pinion.bricks.rim_mm;
     deck.teeth = found.settings.row_teeth;
     deck.phi_1 = side.cycle.positions.front().phi;
     deck.approach_mm =
         under_load::range_of(side.cycle, [](const loaded::LoadedPosition& p) { return p.approach_mm; }).mean;
     for (int half = 0; half < found.rings; ++half) {
-      auto text = loaded_bevel::bevel_deck(*pair, half, deck);
+      auto text = decks::bevel_deck(*pair, half, deck);
       if (!text) return std::vector{process::located(job, "gear", text.error())};
       files.emplace_back(fmt::format("half_{}_wall_{}.inp", half, side.side > 0 ? "L" : "U"), std::move(*text));
     }

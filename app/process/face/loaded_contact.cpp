@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "app/job/file.h"
-#include "geometry/loaded/ccx_deck.h"
+#include "geometry/decks/rows_deck.h"
 
 namespace toothpath::face {
 namespace {
@@ -158,14 +158,14 @@ process::ValueOrErrors<process::NamedFiles> loaded_decks(const job::Job& job, co
   for (int ring = 0; ring < found.rings; ++ring)
     for (const auto& side : found.sides) {
       if (side.as_cut) continue;
-      loaded::DeckOptions options;
+      decks::DeckOptions options;
       options.bricks.rim_mm = found.rim_mm;
       options.teeth = found.settings.row_teeth;
       options.E = found.settings.youngs_modulus_N_mm2[0], options.nu = found.settings.poisson[0];
       options.pinion_fillet_mm = kPinionFillet * gear.parameters().module_mm;
       options.approach_mm =
           under_load::range_of(side.cycle, [](const loaded::LoadedPosition& p) { return p.approach_mm; }).mean;
-      auto deck = loaded::contact_deck(gear, ring, side.side, options);
+      auto deck = decks::contact_deck(gear, ring, side.side, options);
       if (!deck) return std::vector{process::located(job, fmt::format("gear.zone[{}]", ring), deck.error())};
       files.emplace_back(fmt::format("ring_{}_flank_{}.inp", ring, side.side > 0 ? "plus" : "minus"), std::move(*deck));
     }

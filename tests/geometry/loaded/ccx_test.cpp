@@ -10,10 +10,10 @@
 #include <regex>
 #include <sstream>
 
+#include "geometry/decks/bevel_deck.h"
+#include "geometry/decks/rows_deck.h"
 #include "geometry/elastic/brick_stress.h"
-#include "geometry/loaded/ccx_deck.h"
 #include "geometry/loaded_bevel/bevel_body.h"
-#include "geometry/loaded_bevel/bevel_deck.h"
 #include "tests/geometry/loaded/trial_gear.h"
 #include "tests/geometry/loaded_bevel/bevel_pairs.h"
 
@@ -124,7 +124,7 @@ TEST(CalculiX, AgreesOnTheBodies) {
     const auto C = elastic::tooth_compliance(s, 0.3, 3);
     ASSERT_TRUE(C);
     const int station = s.columns + 1;
-    const auto moved = run_ccx(loaded::hat_deck(s, 0.3, 3, station), "hat");
+    const auto moved = run_ccx(decks::hat_deck(s, 0.3, 3, station), "hat");
     const auto row = elastic::sector_row(s, 3);
     ASSERT_EQ(moved.size(), row.nodes.size());
     double worst = 0, largest = 0;
@@ -189,7 +189,7 @@ TEST(CalculiX, AgreesOnTheStress) {
     ASSERT_TRUE(fields);
     const int station = s.columns + 1;
     const auto row = elastic::sector_row(s, 3);
-    const auto found = run_deck(std::regex_replace(loaded::hat_deck(s, 0.3, 3, station), std::regex("\\*END STEP"),
+    const auto found = run_deck(std::regex_replace(decks::hat_deck(s, 0.3, 3, station), std::regex("\\*END STEP"),
                                                    "*EL PRINT, ELSET=BODY\nS\n*EL FILE\nS\n*END STEP"),
                                 "stress");
     const auto at_points = stress_at_points(found.dat);
@@ -231,9 +231,9 @@ TEST(CalculiX, AgreesOnTheContact) {
     for (const auto& s : p->segments) ours[s.place.tooth + 1] += s.force;
     force += (kApproach - p->approach_mm) * p->tangent;
   }
-  loaded::DeckOptions deck;
+  decks::DeckOptions deck;
   deck.approach_mm = kApproach;
-  const auto text = loaded::contact_deck(gear, 1, 1, deck);
+  const auto text = decks::contact_deck(gear, 1, 1, deck);
   ASSERT_TRUE(text) << text.error().message;
   const auto reactions = run_ccx(*text, "contact");
   ASSERT_FALSE(reactions.empty());
@@ -259,10 +259,10 @@ TEST(CalculiX, AgreesOnTheContactOfABevelPair) {
     ours = load.torque_nmm;
     load.torque_nmm += (kApproach - p->approach_mm) * p->tangent * pair.lever;
   }
-  loaded_bevel::BevelDeckOptions deck;
+  decks::BevelDeckOptions deck;
   deck.wheel.rim_mm = deck.pinion.rim_mm = 20;
   deck.phi_1 = phi, deck.approach_mm = kApproach;
-  const auto text = loaded_bevel::bevel_deck(pair, 0, deck);
+  const auto text = decks::bevel_deck(pair, 0, deck);
   ASSERT_TRUE(text) << text.error().message;
   const auto reactions = run_ccx(*text, "bevel");
   ASSERT_FALSE(reactions.empty());

@@ -5,7 +5,7 @@
 
 #include "geometry/loaded_bevel/loaded_bevel_pair.h"
 
-namespace toothpath::loaded_bevel {
+namespace toothpath::decks {
 
 struct BevelDeckOptions {
   elastic::SectorPlan wheel = {4, 12, 3, 1, 3, 8, 25, 2}, pinion = {4, 12, 3, 1, 3, 8, 25, 2};
@@ -15,8 +15,9 @@ struct BevelDeckOptions {
   double approach_mm = 0;  ///< by which the wheel is turned against the pinion, at the nominal lever of the pair
 };
 
-/// As loaded::rows_deck: the moment of the reactions of GEAR_HELD about the wheel's axis is the torque.
+/// As rows_deck: the moment of the reactions of GEAR_HELD about the wheel's axis is the torque.
 /// Refused: as for the bricks; no pair touches.
-[[nodiscard]] Result<std::string> bevel_deck(const LoadedBevelPair& pair, int half, const BevelDeckOptions& options);
+[[nodiscard]] Result<std::string> bevel_deck(const loaded_bevel::LoadedBevelPair& pair, int half,
+                                             const BevelDeckOptions& options);
 
-}  // namespace toothpath::loaded_bevel
+}  // namespace toothpath::decks

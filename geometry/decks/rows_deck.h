@@ -6,7 +6,7 @@
 
 #include "geometry/loaded/loaded_pair.h"
 
-namespace toothpath::loaded {
+namespace toothpath::decks {
 
 struct DeckOptions {
   elastic::SectorPlan bricks = {4, 12, 3, 1, 3, 8, 25, 2};  ///< thinner towards the loaded flank
@@ -23,7 +23,7 @@ struct DeckRows {
   const elastic::Sector *gear = nullptr, *pinion = nullptr;
   Mat3 gear_turn = Mat3::Identity(), pinion_turn = Mat3::Identity();  ///< from a sector's frame, of the middle tooth
   Vec3 gear_at = Vec3::Zero(), pinion_at = Vec3::Zero();              ///< where the origins of the sectors go
-  int pinion_next = 1;                                                ///< as in CellRing
+  int pinion_next = 1;                                                ///< as in loaded::CellRing
   Vec3 axis = Vec3::UnitZ();                                          ///< of the gear, through gear_at
   double turn = 0;                                                    ///< of its clamped nodes about it, rad
   int teeth = 3;                                                      ///< of the rows, odd
@@ -41,4 +41,4 @@ struct DeckRows {
 /// One body with a hat of force 1 on station `station` of the middle tooth; prints all displacements. For E = 1.
 [[nodiscard]] std::string hat_deck(const elastic::Sector& sector, double nu, int teeth, int station);
 
-}  // namespace toothpath::loaded
+}  // namespace toothpath::decks

@@ -1,10 +1,10 @@
-#include "geometry/loaded/ccx_deck.h"
+#include "geometry/decks/rows_deck.h"
 
 #include <cmath>
 
 #include "geometry/base/angle.h"
 
-namespace toothpath::loaded {
+namespace toothpath::decks {
 namespace {
 
 void add_ids(std::string& out, const std::vector<int>& ids, int offset) {
@@ -49,13 +49,14 @@ Result<std::string> contact_deck(const face_gear::FaceGear& gear, int ring, int 
   const auto& of_ring = gear.rings().at(static_cast<std::size_t>(ring));
   const auto& f = of_ring.surface;
   const auto pinion = contact::make_pinion(f, f.shaper.teeth);
-  const PinionProfile profile = pinion_profile(pinion, f.shaper.h_f, o.pinion_fillet_mm);
+  const loaded::PinionProfile profile = loaded::pinion_profile(pinion, f.shaper.h_f, o.pinion_fillet_mm);
   const auto bounds =
-      contact_bounds(f, side, of_ring.zone.inner_radius_mm, of_ring.zone.outer_radius_mm, profile.least_theta);
+      loaded::contact_bounds(f, side, of_ring.zone.inner_radius_mm, of_ring.zone.outer_radius_mm, profile.least_theta);
   if (!bounds) return bounds.error();
-  const auto on_gear = gear_bricks(f, side, of_ring.zone.inner_radius_mm, of_ring.zone.outer_radius_mm, o.bricks);
+  const auto on_gear =
+      loaded::gear_bricks(f, side, of_ring.zone.inner_radius_mm, of_ring.zone.outer_radius_mm, o.bricks);
   if (!on_gear) return on_gear.error();
-  const auto on_pinion = pinion_bricks(pinion, profile, side, bounds->least_Z, bounds->most_Z, o.bricks);
+  const auto on_pinion = loaded::pinion_bricks(pinion, profile, side, bounds->least_Z, bounds->most_Z, o.bricks);
   if (!on_pinion) return on_pinion.error();
   const auto about_z = [](double angle) { return Mat3(Eigen::AngleAxisd(angle, Vec3::UnitZ())); };
   Mat3 frame;
@@ -125,4 +126,4 @@ std::string hat_deck(const elastic::Sector& sector, double nu, int teeth, int st
   return out;
 }
 
-}  // namespace toothpath::loaded
+}  // namespace toothpath::decks

@@ -1,25 +1,25 @@
-#include "geometry/loaded_bevel/bevel_deck.h"
+#include "geometry/decks/bevel_deck.h"
 
 #include "geometry/base/angle.h"
-#include "geometry/loaded/ccx_deck.h"
+#include "geometry/decks/rows_deck.h"
 #include "geometry/loaded_bevel/bevel_body.h"
 #include "geometry/loaded_bevel/bevel_flanks.h"
 
-namespace toothpath::loaded_bevel {
+namespace toothpath::decks {
 
-Result<std::string> bevel_deck(const LoadedBevelPair& pair, int half, const BevelDeckOptions& o) {
+Result<std::string> bevel_deck(const loaded_bevel::LoadedBevelPair& pair, int half, const BevelDeckOptions& o) {
   const contact::BevelPair& rolled = pair.pair;
-  const auto on_wheel = bevel_bricks(rolled.wheel(), half, pair.sigma, o.wheel);
+  const auto on_wheel = loaded_bevel::bevel_bricks(rolled.wheel(), half, pair.sigma, o.wheel);
   if (!on_wheel) return on_wheel.error();
-  const auto on_pinion = bevel_bricks(rolled.pinion(), half, pair.sigma, o.pinion);
+  const auto on_pinion = loaded_bevel::bevel_bricks(rolled.pinion(), half, pair.sigma, o.pinion);
   if (!on_pinion) return on_pinion.error();
-  const BevelFlanks flanks(pair, o.phi_1);
+  const loaded_bevel::BevelFlanks flanks(pair, o.phi_1);
   if (flanks.sites().empty()) return fail("no pair touches while the pinion stands at {:.4f} deg", degrees(o.phi_1));
   const auto about_z = [](double angle) { return Mat3(Eigen::AngleAxisd(angle, Vec3::UnitZ())); };
   const double tau_1 = rolled.pinion().pitch(), tau_2 = rolled.wheel().pitch();
   Mat3 wheel_frame;
   for (int k = 0; k < 3; ++k) wheel_frame.col(k) = rolled.turned_to_pinion(Vec3::Unit(k), 0);
-  loaded::DeckRows rows;
+  DeckRows rows;
   rows.head = fmt::format("bevel pair, half {}, wall {:+}, pinion at {:.6f} deg, approach {:g} mm at {:.9f} mm", half,
                           pair.sigma, degrees(o.phi_1), o.approach_mm, pair.wheel_lever);
   rows.gear = &on_wheel->sector, rows.pinion = &on_pinion->sector;
@@ -31,7 +31,7 @@ Result<std::string> bevel_deck(const LoadedBevelPair& pair, int half, const Beve
   rows.pinion_next = -1;
   rows.turn = pair.sigma * o.approach_mm / pair.wheel_lever;
   rows.teeth = o.teeth, rows.E = pair.options.wheel.E, rows.nu = pair.options.wheel.nu;
-  return loaded::rows_deck(rows);
+  return rows_deck(rows);
 }
 
-}  // namespace toothpath::loaded_bevel
+}  // namespace toothpath::decks
