@@ -256,6 +256,28 @@ process::ValueOrErrors<bevel_gear::BevelGear> mate_of(const process::ContactAske
   return process::make_bevel_gear(other);
 }
 
+/// Files, JSON and what stands on the screen.
+process::ContactFound told(const PairAnalysis& a) {
+  process::ContactFound found;
+  found.missed = a.ease_off.misaligned.missed();
+  found.job_text = a.ease_off.misaligned.job_text;
+  found.json = json_of(a);
+  found.summary = fmt::format("{}: pinion {} teeth, wheel {} teeth\n{}\n{}\n{}\n{}", a.name, a.pinion_teeth,
+                              a.wheel_teeth, page::table_text(wall_table(a)), finding(a),
+                              page::table_text(change_table(a)), ease_off_summary(a.ease_off));
+  found.files = {{"contact.csv", places_csv(a)},
+                 {"ease_off.csv", ease_off_csv(a.ease_off)},
+                 {"transmission.csv", transmission_csv(a)},
+                 {"contact.json", found.json},
+                 {"contact.html", page_of(a)}};
+  if (a.loaded) {
+    found.summary += under_load::loaded_summary(*a.loaded);
+    found.files.emplace_back("loaded.csv", under_load::loaded_csv(*a.loaded));
+    found.files.emplace_back("pressure.csv", under_load::pressure_csv(*a.loaded));
+  }
+  return found;
+}
+
 }  // namespace
 
 process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, const bevel_gear::BevelGear& gear,
@@ -300,27 +322,11 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   if (auto* errors = eased.refused()) return std::move(*errors);
   a.ease_off = std::move(eased).value();
 
-  process::ContactFound found;
-  found.missed = a.ease_off.misaligned.missed();
-  found.job_text = a.ease_off.misaligned.job_text;
-  found.json = json_of(a);
-  found.summary = fmt::format("{}: pinion {} teeth, wheel {} teeth\n{}\n{}\n{}\n{}", a.name, a.pinion_teeth,
-                              a.wheel_teeth, page::table_text(wall_table(a)), finding(a),
-                              page::table_text(change_table(a)), ease_off_summary(a.ease_off));
-  found.files = {{"contact.csv", places_csv(a)},
-                 {"ease_off.csv", ease_off_csv(a.ease_off)},
-                 {"transmission.csv", transmission_csv(a)},
-                 {"contact.json", found.json},
-                 {"contact.html", page_of(a)}};
-  if (a.loaded) {
-    found.summary += under_load::loaded_summary(*a.loaded);
-    found.files.emplace_back("loaded.csv", under_load::loaded_csv(*a.loaded));
-    found.files.emplace_back("pressure.csv", under_load::pressure_csv(*a.loaded));
-    if (!asked.ccx_dir.empty()) {
-      auto decks = loaded_decks(job, pinion, wheel, *a.loaded, settings);
-      if (auto* errors = decks.refused()) return std::move(*errors);
-      found.decks = std::move(decks).value();
-    }
+  process::ContactFound found = told(a);
+  if (a.loaded && !asked.ccx_dir.empty()) {
+    auto decks = loaded_decks(job, pinion, wheel, *a.loaded, settings);
+    if (auto* errors = decks.refused()) return std::move(*errors);
+    found.decks = std::move(decks).value();
   }
   return found;
 }

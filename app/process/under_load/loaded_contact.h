@@ -17,11 +17,12 @@ namespace toothpath::under_load {
 struct PairWords {
   const char* gear = "gear";  ///< the one that is not the pinion
   const char* ring = "ring";  ///< one of two faces of opposite hand
+  const char* rings = "rings";
   const char* columns = "r,z";
   const char* along = "radius from the gear's axis [mm]";
 };
 inline constexpr PairWords kFaceWords{},
-    kBevelWords{"wheel", "half", "cone_distance,height", "cone distance on the wheel [mm]"};
+    kBevelWords{"wheel", "half", "halves", "cone_distance,height", "cone distance on the wheel [mm]"};
 
 struct LoadedSide {
   int side = 1;         ///< flank of a face gear, sigma of a bevel wall

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/base/units.h"
 #include "app/process/under_load/asked_besides.h"
@@ -19,7 +20,10 @@ std::string edge_words(const LoadedContact& found, const LoadedSide& side) {
   return fmt::format("edges rounded by {:g} mm press with {:.0f} MPa at most", found.settings.edge_radius_mm, p);
 }
 
-std::vector<std::string> row_of(const LoadedContact& found, const LoadedSide& side) {
+using Cells = std::vector<std::pair<std::string, std::string>>;  // heading, value
+
+/// A row of the table; what no side of this pair has is left out.
+Cells row_of(const LoadedContact& found, const LoadedSide& side) {
   const auto of = [&](double (*what)(const LoadedPosition&), const char* format = "{:.1f} to {:.1f}") {
     const auto r = range_of(side.cycle, what);
     return fmt::format(fmt::runtime(format), r.least, r.most);
@@ -28,23 +32,25 @@ std::vector<std::string> row_of(const LoadedContact& found, const LoadedSide& si
   std::string harmonics;
   for (int n = 1; n <= harmonics_of(side.cycle); ++n)
     harmonics += fmt::format("{}{:.4f}", n == 1 ? "" : " ", harmonic(side.cycle, n) * app::kMicro);
-  const bool has_lines = range_of(side.cycle, [](const LoadedPosition& p) { return p.line_mm; }).most > 0;
-  return {side.name,
-          of([](const LoadedPosition& p) { return p.approach_mm * app::kUm; }, "{:.3f} to {:.3f}"),
-          fmt::format("{:.4f}", error.most - error.least),
-          harmonics,
-          of([](const LoadedPosition& p) { return p.stiffness / app::kUm; }),
-          has_lines ? of([](const LoadedPosition& p) { return p.line_mm; }) : "-",
-          of([](const LoadedPosition& p) { return double(p.pairs); }, "{:g} to {:g}"),
-          of([](const LoadedPosition& p) { return outer_share(p) * 100; }),
-          of(axial_of),
-          of(gear_axial_of),
-          of([](const LoadedPosition& p) { return p.pressure; }, "{:.0f} to {:.0f}"),
-          of([](const LoadedPosition& p) { return p.end_pressure; }, "{:.0f} to {:.0f}"),
-          of([](const LoadedPosition& p) { return p.end_line_load; }, "{:.0f} to {:.0f}"),
-          found.settings.edge_radius_mm > 0
-              ? of([](const LoadedPosition& p) { return p.edge_pressure; }, "{:.0f} to {:.0f}")
-              : "undefined"};
+  Cells row = {
+      {"flank", side.name},
+      {"approach um", of([](const LoadedPosition& p) { return p.approach_mm * app::kUm; }, "{:.3f} to {:.3f}")},
+      {"error p-p urad", fmt::format("{:.4f}", error.most - error.least)},
+      {"harmonics urad", harmonics},
+      {"stiffness N/um", of([](const LoadedPosition& p) { return p.stiffness / app::kUm; })}};
+  if (found.segment_mm > 0) row.emplace_back("line mm", of([](const LoadedPosition& p) { return p.line_mm; }));
+  row.emplace_back("pairs", of([](const LoadedPosition& p) { return double(p.pairs); }, "{:g} to {:g}"));
+  if (found.rings > 1)
+    row.emplace_back(fmt::format("outer {} %", found.words.ring),
+                     of([](const LoadedPosition& p) { return outer_share(p) * 100; }));
+  row.emplace_back("axial N", of(axial_of));
+  row.emplace_back(fmt::format("axial, {} N", found.words.gear), of(gear_axial_of));
+  row.emplace_back("pressure MPa", of([](const LoadedPosition& p) { return p.pressure; }, "{:.0f} to {:.0f}"));
+  row.emplace_back("at line ends MPa", of([](const LoadedPosition& p) { return p.end_pressure; }, "{:.0f} to {:.0f}"));
+  row.emplace_back("edge N/mm", of([](const LoadedPosition& p) { return p.end_line_load; }, "{:.0f} to {:.0f}"));
+  if (found.settings.edge_radius_mm > 0)
+    row.emplace_back("edge MPa", of([](const LoadedPosition& p) { return p.edge_pressure; }, "{:.0f} to {:.0f}"));
+  return row;
 }
 
 }  // namespace
@@ -93,22 +99,16 @@ std::string loaded_summary(const LoadedContact& found) {
 
 std::string loaded_introduction(const LoadedContact& found) {
   return fmt::format(
-      "Under load both members are elastic: {:g} N m on the {}, the pinion {} along its axis. All teeth and {}s share "
+      "Under load both members are elastic: {:g} N m on the {}, the pinion {} along its axis. All teeth and {} share "
       "it; "
       "the first touch of the unloaded flanks is the zero of approach and transmission error.",
-      found.torque_gear_Nm, found.words.gear, found.floating ? "floats" : "is held", found.words.ring);
+      found.torque_gear_Nm, found.words.gear, found.floating ? "floats" : "is held", found.words.rings);
 }
 
 namespace {
 
 page::PageTable loaded_table(const LoadedContact& found) {
-  page::PageTable t{
-      "Under load",
-      {"flank", "approach um", "error p-p urad", "harmonics urad", "stiffness N/um", "line mm", "pairs",
-       fmt::format("outer {} %", found.words.ring), "axial N", fmt::format("axial, {} N", found.words.gear),
-       "pressure MPa", "at line ends MPa", "edge N/mm", "edge MPa"},
-      {},
-      ""};
+  page::PageTable t{"Under load", {}, {}, ""};
   t.note = fmt::format(
       "{:g} N m on the {}. Approach: along the normals. Harmonics: of the transmission error over a pitch. {} {} The "
       "back of the rim ({:g} mm) and the ends of a row of {} teeth are clamped: what holds them moves the stiffness "
@@ -125,7 +125,15 @@ page::PageTable loaded_table(const LoadedContact& found) {
           ? fmt::format("Edge: its line load, and the pressure of its radius, {:g} mm.", found.settings.edge_radius_mm)
           : "Edge: its line load; without edge_radius its pressure is undefined.",
       found.rim_mm, found.settings.row_teeth);
-  for (const auto& side : found.sides) t.rows.push_back(row_of(found, side));
+  for (const auto& side : found.sides) {
+    const Cells row = row_of(found, side);
+    const bool first = t.rows.empty();
+    t.rows.emplace_back();
+    for (const auto& [heading, value] : row) {
+      if (first) t.columns.push_back(heading);
+      t.rows.back().push_back(value);
+    }
+  }
   return t;
 }
 
