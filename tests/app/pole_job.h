@@ -113,7 +113,8 @@ inline std::vector<JointMove> joint_feeds(const std::string& program) {
   bool feed = false, inverse = false;
   double f = 0;
   while (std::getline(in, line)) {
-    if (line.empty() || line[0] == '(' || line[0] == 'o' || line[0] == '#' || line.find("G53") != std::string::npos)
+    if (line.empty() || line[0] == '(' || line[0] == 'o' || line[0] == '#' || line.find("G53") != std::string::npos ||
+        line.starts_with("G52") || line.starts_with("G92"))
       continue;
     std::istringstream words(line);
     std::string word;
@@ -126,9 +127,7 @@ inline std::vector<JointMove> joint_feeds(const std::string& program) {
       if (word == "G94") inverse = false;
       if (word[0] == 'F') f = std::stod(word.substr(1));
       if (std::string("XYZAC").find(word[0]) == std::string::npos) continue;
-      std::string value = word.substr(1);
-      if (value.rfind("[#1", 0) == 0) value = value.size() > 4 ? value.substr(3, value.size() - 4) : "0";  // tooth 0
-      to[word[0]] = std::stod(value);
+      to[word[0]] = std::stod(word.substr(1));
       moves = true;
     }
     if (moves && feed && at.size() == 5) {
