@@ -147,10 +147,6 @@ std::vector<path::ToolMotion> motions_of(std::span<const path::ToolMotion> motio
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 /// By which a tooth is known: a tool that is changed ahead of it comes from anywhere. Null: it cuts nothing.
 const path::ToolMotion* first_cut(std::span<const path::ToolMotion> motions) {
   const auto cut = std::find_if(motions.begin(), motions.end(), [](const auto& m) { return !m.rapid; });

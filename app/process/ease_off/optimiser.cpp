@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "app/base/units.h"
-#include "geometry/base/angle.h"
 
 namespace toothpath::ease_off {
 namespace {
