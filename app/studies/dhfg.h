@@ -13,6 +13,7 @@ struct DhfgRequest : commands::CommonRequest {
   std::string study_file;  ///< empty: the literature's levels, no milling
   std::string out_dir;
   bool quick = false;  ///< the short form
+  std::string shard;   ///< "i/n"; empty: of the array of Slurm, else the whole study at once
 };
 
 /// Reads a study file: tables [study], [[tool]] and [[operation]] (as in a job). Without text: the literature's levels,
@@ -22,7 +23,8 @@ struct DhfgRequest : commands::CommonRequest {
                                                                          const std::string& file);
 
 /// Writes dhfg.csv, dhfg.json and dhfg.html. With `quick` scallops are ten times, chords five times, steps twice as
-/// coarse: the milling times are then those of that coarse surface, and say so.
+/// coarse: the milling times are then those of that coarse surface, and say so. A shard writes its samples instead, for
+/// `study merge`; all of them in one shard: merged at once. Refused: a directory with another study.
 [[nodiscard]] commands::CommandOutcome study_dhfg(const DhfgRequest& request);
 
 }  // namespace toothpath::studies

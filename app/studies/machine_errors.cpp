@@ -8,17 +8,14 @@
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
 #include "app/studies/errors/head.h"
-#include "app/studies/samples/sample_file.h"
-#include "geometry/base/hash.h"
-#include "geometry/base/work_share.h"
-#include "machines/toml/regular_file.h"
+#include "app/studies/merge.h"
+#include "app/studies/samples/run_shard.h"
 
 namespace toothpath::studies {
 namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr int kSamplesOfRow = 24;
-constexpr std::size_t kMostInput = std::size_t(1) << 30;
 constexpr process::FlankGrid kCoarse{12, 9};  // of a flank: errors of a machine are smooth on it
 
 /// What all samples stand on.
@@ -29,18 +26,6 @@ struct Study {
   samples::Head head;
   explicit Study(bool quiet) : run(quiet) {}
 };
-
-/// Of all that decides the samples: contents of the inputs, the program, the head itself.
-std::string key_of(const Json& head, const std::string& program) {
-  Sha256 hash;
-  hash.add(head.dump());
-  hash.add(program);
-  for (const std::string& path : toml::inputs_read()) {
-    if (path.ends_with(".jsonl")) continue;
-    if (const auto text = toml::read_input_file(path, kMostInput)) hash.add(sha256_hex(*text));
-  }
-  return hash.hex();
-}
 
 samples::Head head_of(const MachineErrorsRequest& request, const Study& study) {
   Json head{{"study", errors::kStudy}, {"version", errors::kVersion}, {"key", ""}};
@@ -54,7 +39,7 @@ samples::Head head_of(const MachineErrorsRequest& request, const Study& study) {
   head["verified"] = study.run.report.verified;
   head["nominal"] = errors::json_of(study.flanks->nominal());
   head["errors"] = errors::json_of(study.errors);
-  head["key"] = key_of(head, study.run.program_text);
+  head["key"] = samples::key_of({head.dump(), study.run.program_text});
   return {errors::kStudy, head["samples"], head.dump(-1, ' ', false, Json::error_handler_t::replace)};
 }
 
@@ -95,22 +80,6 @@ Result<std::string> sample_line(Study& study, int sample, int seed) {
   return json.dump();
 }
 
-Status run_samples(Study& study, const samples::Shard& shard, int seed, samples::SampleFile& file) {
-  std::vector<int> wanted;
-  for (int k = 0; k < study.head.samples; ++k)
-    if (shard.has(k) && !file.has(k)) wanted.push_back(k);
-  WorkShare share{double(std::max<std::size_t>(1, wanted.size()))};
-  for (const int k : wanted) {
-    const auto line = [&] {
-      const WorkShare sample(share, 1);
-      return sample_line(study, k, seed);
-    }();
-    if (!line) return line.error();
-    if (const auto added = file.add(k, *line); !added) return added;
-  }
-  return Ok{};
-}
-
 }  // namespace
 
 commands::CommandOutcome study_machine_errors(const MachineErrorsRequest& request) {
@@ -127,15 +96,13 @@ commands::CommandOutcome study_machine_errors(const MachineErrorsRequest& reques
       study.run.progress.clear();
       return commands::failed(std::move(errors));
     }
-    auto file = samples::SampleFile::open(request.out_dir, *shard, study.head);
-    if (!file) return commands::failed(file.error());
-    const std::size_t before = file->size();
-    const Status done =
-        study.run.clock.run("samples", [&] { return run_samples(study, *shard, request.seed.value_or(1), *file); });
+    const auto ran = study.run.clock.run("samples", [&] {
+      return samples::run_shard(request.out_dir, *shard, study.head,
+                                [&](int k) { return sample_line(study, k, request.seed.value_or(1)); });
+    });
     study.run.progress.clear();
-    if (!done) return commands::failed(done.error());
-    outcome.summary =
-        fmt::format("{} samples in {}, {} of them new\n", file->size(), file->path(), file->size() - before);
+    if (!ran) return commands::failed(ran.error());
+    outcome.summary = ran->summary();
   }
   if (shard->count > 1) return outcome;
   commands::CommandOutcome merged = study_merge({{request.quiet, request.color}, request.out_dir});
@@ -151,8 +118,7 @@ void add_machine_errors(commands::Commands& commands) {
         set.whole_number("--samples", request.samples,
                          "samples of each error alone, and of all together: 1 to 100000 (24)", {1, 100000});
         set.whole_number("--seed", request.seed, "of the random numbers: 0 to 2147483647 (1)", {0, 2147483647});
-        set.text("--shard", request.shard, "part i of n of the samples; in a Slurm array its task is the default",
-                 "i/n");
+        set.text("--shard", request.shard, samples::kShardHelp, "i/n");
         set.texts("--error", request.errors,
                   "size (standard deviation) of an error, um or urad: C.pivot=5; 0 leaves it out; repeatable",
                   "NAME=SIZE");

@@ -1,25 +1,59 @@
+#include "app/studies/merge.h"
+
+#include <algorithm>
+#include <iterator>
+
 #include "app/process/opening_and_end.h"
 #include "app/studies/errors/head.h"
 #include "app/studies/errors/summary.h"
-#include "app/studies/machine_errors.h"
 #include "app/studies/samples/sample_file.h"
+#include "app/studies/trials/dhfg_summary.h"
 
 namespace toothpath::studies {
 namespace {
 
 constexpr const char* kSamples = "samples.jsonl";
 
+/// What a study makes of its samples.
+struct Summary {
+  process::NamedFiles files;
+  std::string json, text;
+};
+
+Result<Summary> machine_errors(const samples::Merged& merged) {
+  auto made = errors::summary_of(merged);
+  if (!made) return made.error();
+  return Summary{std::move(made->files), std::move(made->json), std::move(made->text)};
+}
+
+Result<Summary> dhfg(const samples::Merged& merged) {
+  const auto study = trials::study_of(merged);
+  if (!study) return study.error();
+  trials::DhfgSummary made = summary_of(study->facts, study->found);
+  return Summary{std::move(made.files), std::move(made.json), std::move(made.text)};
+}
+
+struct Study {
+  const char* name;
+  const std::vector<std::string>& files;
+  Result<Summary> (*summary)(const samples::Merged&);
+};
+const Study kStudies[] = {{errors::kStudy, errors::kSummaryFiles, machine_errors},
+                          {trials::kDhfg, trials::kDhfgFiles, dhfg}};
+
 }  // namespace
 
 commands::CommandOutcome study_merge(const MergeRequest& request) {
   auto merged = samples::merge(request.directory);
   if (!merged) return commands::failed(merged.error());
-  if (merged->head.study != errors::kStudy)
-    return commands::failed(
-        fail("{}: study \"{}\" is not known; known: {}", request.directory, merged->head.study, errors::kStudy));
-  auto summary = errors::summary_of(*merged);
+  const auto* study = std::find_if(std::begin(kStudies), std::end(kStudies),
+                                   [&](const Study& s) { return s.name == merged->head.study; });
+  if (study == std::end(kStudies))
+    return commands::failed(fail("{}: study \"{}\" is not known; known: {}, {}", request.directory, merged->head.study,
+                                 errors::kStudy, trials::kDhfg));
+  auto summary = study->summary(*merged);
   if (!summary) return commands::failed(summary.error());
-  std::vector<std::string> names = errors::kSummaryFiles;
+  std::vector<std::string> names = study->files;
   names.emplace_back(kSamples);
   auto output = app::OutputDir::open(request.directory, names);
   if (!output) return commands::failed(output.error());

@@ -49,8 +49,10 @@ Result<Shard> shard_of_array() {
 std::string Shard::text() const { return fmt::format("{}/{}", number, count); }
 std::string Shard::file_name() const { return fmt::format("samples.{}of{}.jsonl", number, count); }
 
+bool in_slurm_array() { return std::getenv("SLURM_ARRAY_TASK_ID") != nullptr; }
+
 Result<Shard> shard_of(const std::string& option) {
-  if (option.empty()) return std::getenv("SLURM_ARRAY_TASK_ID") != nullptr ? shard_of_array() : Shard{};
+  if (option.empty()) return in_slurm_array() ? shard_of_array() : Shard{};
   const std::string_view text = option;
   const std::size_t slash = text.find('/');
   const int number = whole(text.substr(0, slash)),

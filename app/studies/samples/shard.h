@@ -16,6 +16,10 @@ struct Shard {
 };
 
 inline constexpr int kMostShards = 10000;
+inline constexpr const char* kShardHelp = "part i of n of the samples; in a Slurm array its task is the default";
+
+/// This process is a task of a Slurm array.
+[[nodiscard]] bool in_slurm_array();
 
 /// Of an option "i/n"; where that is empty of the array that Slurm runs this process in (SLURM_ARRAY_TASK_ID, _MIN,
 /// _COUNT, _STEP); else all samples. Refused (kind usage): what is no shard; an array with gaps.

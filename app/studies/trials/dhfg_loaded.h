@@ -43,9 +43,12 @@ struct EffortRow {
   double segment_mm = 0, rim_mm = 0;
   int row_teeth = 5;
   LoadedTrial found;
-  double seconds = 0;
+  double seconds = 0;  ///< run time; 0: nobody measured it
 };
-[[nodiscard]] std::vector<EffortRow> effort_rows(const face_gear::FaceGear& gear, double torque_nmm, bool quick);
+/// Those that are tried, with nothing found yet; two of them with `quick`.
+[[nodiscard]] std::vector<EffortRow> effort_rows(double module_mm, bool quick);
+/// Fills in what is found, and its run time.
+void load_effort(const face_gear::FaceGear& gear, double torque_nmm, EffortRow& row);
 
 [[nodiscard]] page::PageTable loaded_trials_table(const std::vector<DhfgTrial>& trials);
 /// All trials with halves of one width: what is left of their differences when the face is the same.

@@ -126,12 +126,17 @@ const std::vector<TrialLevels>& l9_trials() {
   return trials;
 }
 
+TrialGear trial_gear(const DhfgStudy& study, const TrialLevels& levels) {
+  TrialGear made{begin_trial(study, levels), {}};
+  made.gear = make_trial_gear(study, made.trial);
+  return made;
+}
+
 LoadedTrial load_with_halves(const DhfgStudy& study, const TrialLevels& levels, double half_face_mm,
                              const LoadedEffort& effort) {
   DhfgStudy same = study;
   same.half_face_mm = half_face_mm;
-  DhfgTrial trial = begin_trial(study, levels);
-  const auto gear = make_trial_gear(same, trial);
+  const auto [trial, gear] = trial_gear(same, levels);
   if (gear) return load_trial(*gear, study.torque_nmm, effort);
   LoadedTrial refused;
   refused.refusal = trial.refusal;
@@ -139,10 +144,8 @@ LoadedTrial load_with_halves(const DhfgStudy& study, const TrialLevels& levels, 
 }
 
 DhfgTrial dhfg_trial(const DhfgStudy& study, const TrialLevels& levels) {
-  DhfgTrial trial = begin_trial(study, levels);
-  trial.gear = make_trial_gear(study, trial);
-  if (!trial.gear) return trial;
-  const auto* gear = &*trial.gear;
+  auto [trial, gear] = trial_gear(study, levels);
+  if (!gear) return std::move(trial);
   roll_trial(*gear, trial);
   const auto &inner = gear->rings()[0].surface, &outer = gear->rings()[1].surface;
   const auto inner_pinion = contact::make_pinion(inner, trial.pinion_teeth),
@@ -152,7 +155,7 @@ DhfgTrial dhfg_trial(const DhfgStudy& study, const TrialLevels& levels) {
       contact::double_mesh_force(inner, outer, inner_pinion, outer_pinion, 1, study.torque_nmm, study.held_share);
   trial.loaded = load_trial(*gear, study.torque_nmm, study.effort);
   trial.milling = mill(study, *gear);
-  return trial;
+  return std::move(trial);
 }
 
 }  // namespace toothpath::trials

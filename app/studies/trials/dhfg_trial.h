@@ -51,7 +51,7 @@ struct DhfgTrial {
   double helix_angle_rad = 0;
   // Limits of either half: equal by the mirror identity.
   double R1_mm = 0, R2_mm = 0, land_mm = 0, L_p_mm = 0;  ///< R1, pointing R2, R2' at a land of 0.2 m
-  const char* R1_name = "";
+  std::string R1_name;
   double inner_mm = 0, groove_mm = 0,
          outer_mm = 0;      ///< R_in, R_g, R_out as chosen: band less margins, groove in the middle
   double feasible_mm = 0;   ///< largest radial width of each half; <= 0: not feasible
@@ -65,8 +65,14 @@ struct DhfgTrial {
   contact::DoubleMeshForce balanced, held;
   LoadedTrial loaded;
   MillingTime milling;
-  std::optional<face_gear::FaceGear> gear;  ///< where nothing refuses it
 };
+
+/// A trial with its limits alone, and its gear where nothing refuses it.
+struct TrialGear {
+  DhfgTrial trial;
+  std::optional<face_gear::FaceGear> gear;
+};
+[[nodiscard]] TrialGear trial_gear(const DhfgStudy& study, const TrialLevels& levels);
 
 /// The trial's gear with halves of this width around the same groove, under load.
 [[nodiscard]] LoadedTrial load_with_halves(const DhfgStudy& study, const TrialLevels& levels, double half_face_mm,

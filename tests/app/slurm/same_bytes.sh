@@ -6,9 +6,8 @@ sources=$2
 here=$(dirname "$0")
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
-job=$sources/samples/spur_quick.toml
-options="--samples 2 --only --error C.pivot=5 --error tool.length=5 --error tool.radius=3"
-"$TOOTHPATH" study machine-errors "$job" --out "$dir/one" $options --quiet
+study="machine-errors $sources/samples/spur_quick.toml --samples 2 --only --error C.pivot=5 --error tool.length=5 --error tool.radius=3"
+"$TOOTHPATH" study $study --out "$dir/one" --quiet
 same_bytes() {
   ls "$dir/out"
   for i in $(seq "$1"); do test -s "$dir/out/samples.${i}of$1.jsonl"; done

@@ -1,13 +1,13 @@
 #!/bin/sh
-# machine_errors_slurm_test.sh TOOTHPATH SOURCES: the script of samples/studies gives the bytes of one process. Exit 77:
+# shards_slurm_test.sh TOOTHPATH SOURCES: the script of samples/studies gives the bytes of one process. Exit 77:
 # Slurm does not start here, and why.
 . "$(dirname "$0")/same_bytes.sh"
 # The array as people submit it, and the merge that waits for it.
 cat >"$dir/submit.sh" <<SUBMIT
 set -eu
 cd "$dir"
-sbatch -o "$dir/task.%a" "$sources/samples/studies/machine_errors.slurm" "$job" "$dir/out" $options
-sbatch --wait -o "$dir/merge" --dependency=singleton --job-name=machine-errors \
+sbatch -o "$dir/task.%a" "$sources/samples/studies/shards.slurm" "$dir/out" $study
+sbatch --wait -o "$dir/merge" --dependency=singleton --job-name=toothpath-study \
   --wrap "'$TOOTHPATH' study merge '$dir/out'" || { cat "$dir"/task.* "$dir/merge"; exit 1; }
 SUBMIT
 "$here/one_node.sh" "$dir/slurm" sh "$dir/submit.sh"
