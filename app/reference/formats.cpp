@@ -51,14 +51,15 @@ std::string Format::meaning(const std::string& key) const {
 
 namespace {
 
-Format format_of(Ask ask, const std::vector<toml::TomlValue>& starts, std::span<const Meaning> meanings) {
-  Reference reference = survey(ask, starts);
+Format format_of(Ask ask, const std::vector<toml::TomlValue>& starts, std::span<const Meaning> meanings,
+                 int most_others = kMostOthers) {
+  Reference reference = survey(ask, starts, most_others);
   return {std::move(ask), std::move(reference), meanings};
 }
 
 }  // namespace
 
-Format job_format() {
+Format job_format(int most_others) {
   const Ask ask = [](const toml::TomlValue& document, toml::KeyNotes& notes) {
     return job::note_job_keys(document, "job.toml", notes);
   };
@@ -66,7 +67,7 @@ Format job_format() {
   return format_of(ask,
                    {start_of(""), start_of("[gear]\n[[operation]]\nregions = [\"flank\"]"),
                     start_of("[gear]\n[[operation]]\nregions = [\"root\"]")},
-                   job_meanings());
+                   job_meanings(), most_others);
 }
 
 Format milling_machine_format() {

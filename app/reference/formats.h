@@ -23,7 +23,7 @@ struct Format {
   [[nodiscard]] std::string meaning(const std::string& key) const;
 };
 
-[[nodiscard]] Format job_format();
+[[nodiscard]] Format job_format(int most_others = kMostOthers);
 /// Machine files of `kind = "five_axis"`.
 [[nodiscard]] Format milling_machine_format();
 /// Machine files of `kind = "gear_shaper"`.

@@ -20,6 +20,7 @@ using Words = std::map<std::string, std::string>;
 /// What the reader asked of one document.
 struct Leaf {
   Words words;
+  int others = 0;                   ///< deciding keys that have another word than their first one
   toml::KeyNotes notes;             ///< while the document grew
   std::vector<toml::KeyNote> last;  ///< of the document with all keys
 };
@@ -155,10 +156,9 @@ void drop_unasked(toml::TomlValue& document, const Leaf& leaf) {
       std::erase_if(table->entries, [&](const toml::TomlEntry& entry) { return !asked.contains({name, entry.key}); });
 }
 
-void collect(const Ask& ask, const toml::TomlValue& start, const Words& words, std::vector<Leaf>& leaves,
+/// Goes on with a document in all ways in which that many deciding keys have another word than their first one.
+void collect(const Ask& ask, toml::TomlValue document, Leaf leaf, int most_others, std::vector<Leaf>& leaves,
              std::vector<toml::TomlValue>& documents) {
-  Leaf leaf{words, {}, {}};
-  toml::TomlValue document = start;
   const auto open = grow(ask, document, leaf);
   if (!open) {
     drop_unasked(document, leaf);
@@ -166,10 +166,13 @@ void collect(const Ask& ask, const toml::TomlValue& start, const Words& words, s
     documents.push_back(std::move(document));
     return;
   }
-  for (const std::string& word : choices_of(*open)) {
-    Words more = words;
-    more[dotted(open->table, open->key)] = word;
-    collect(ask, start, more, leaves, documents);
+  const std::vector<std::string> words = choices_of(*open);
+  for (const std::string& word : words) {
+    if (word != words.front() && leaf.others == most_others) break;
+    Leaf more = leaf;
+    more.others += word != words.front() ? 1 : 0;
+    more.words[dotted(open->table, open->key)] = word;
+    collect(ask, document, std::move(more), most_others, leaves, documents);
   }
 }
 
@@ -205,79 +208,120 @@ bool like(const Found& a, const Found& b) {
          std::equal(a.shapes.begin(), a.shapes.end(), b.shapes.begin(), b.shapes.end(), same);
 }
 
-bool holds(const Condition& condition, const Words& words) {
-  const auto found = words.find(condition.key);
-  return std::find(condition.words.begin(), condition.words.end(), found == words.end() ? "" : found->second) !=
-         condition.words.end();
-}
-
 bool below(const std::string& table, const std::string& key) {
   return key.starts_with(table.empty() ? "" : table + ".") &&
          key.find('.', table.empty() ? 0 : table.size() + 1) == std::string::npos;
 }
 
-/// The words of a deciding key in these leaves; "" where they have it not.
-std::vector<std::string> words_of(const std::vector<Words>& leaves, const std::string& key) {
-  std::vector<std::string> found;
-  for (const Words& words : leaves) {
-    const auto at = words.find(key);
-    const std::string word = at == words.end() ? "" : at->second;
-    if (std::find(found.begin(), found.end(), word) == found.end()) found.push_back(word);
+/// The ways in which words were chosen, each once and in order, by numbers: there are many, and they are compared
+/// often.
+class Ways {
+ public:
+  explicit Ways(const std::vector<Leaf>& leaves) {
+    std::set<Words> all;
+    for (const Leaf& leaf : leaves) all.insert(leaf.words);
+    std::set<std::string> keys;
+    for (const Words& words : all)
+      for (const auto& [key, word] : words) keys.insert(key);
+    keys_.assign(keys.begin(), keys.end());
+    words_.resize(keys_.size(), {""});
+    for (const Words& words : all) {
+      numbers_.emplace(words, numbers_.size());
+      for (std::size_t k = 0; k < keys_.size(); ++k) {
+        const auto found = words.find(keys_[k]);
+        chosen_.push_back(found == words.end() ? 0 : number_of(words_[k], found->second));
+      }
+    }
   }
-  return found;
-}
 
-bool has_none(const std::vector<std::string>& words) {
-  return std::find(words.begin(), words.end(), "") != words.end();
-}
+  [[nodiscard]] std::size_t number(const Words& words) const { return numbers_.at(words); }
+  [[nodiscard]] const std::vector<std::string>& keys() const { return keys_; }
+  [[nodiscard]] const std::string& word(std::size_t key, int number) const {
+    return words_[key][static_cast<std::size_t>(number)];
+  }
+  /// The number of the word of a deciding key; 0: it is not there.
+  [[nodiscard]] int chosen(std::size_t way, std::size_t key) const { return chosen_[way * keys_.size() + key]; }
+  /// The words of a deciding key in these ways, in the order in which they are met.
+  [[nodiscard]] std::vector<int> chosen(const std::vector<std::size_t>& ways, std::size_t key) const {
+    std::vector<int> found;
+    for (const std::size_t way : ways)
+      if (const int word = chosen(way, key); std::find(found.begin(), found.end(), word) == found.end())
+        found.push_back(word);
+    return found;
+  }
+
+ private:
+  static int number_of(std::vector<std::string>& words, const std::string& word) {
+    const auto number = std::size_t(std::find(words.begin() + 1, words.end(), word) - words.begin());
+    if (number == words.size()) words.push_back(word);
+    return static_cast<int>(number);
+  }
+
+  std::map<Words, std::size_t> numbers_;
+  std::vector<std::string> keys_;
+  std::vector<std::vector<std::string>> words_;  ///< of each key; the first is ""
+  std::vector<int> chosen_;                      ///< of every way, of each key
+};
+
+bool has_none(const std::vector<int>& words) { return std::find(words.begin(), words.end(), 0) != words.end(); }
 
 /// The conditions on other keys than `self` that choose `some` of `all`. Left out, where that changes nothing, are
 /// those that only say whether a deciding key is there, and those on keys of other tables.
-std::vector<Condition> conditions(const std::string& table, const std::string& self, const std::vector<Words>& all,
-                                  const std::vector<Words>& some) {
-  std::set<std::string> deciding;
-  for (const Words& words : all)
-    for (const auto& [key, word] : words)
-      if (key != self) deciding.insert(key);
-  std::vector<Condition> result;
-  for (const std::string& key : deciding) {
-    Condition condition{key, words_of(some, key)};
-    if (condition.words.size() < words_of(all, key).size()) result.push_back(std::move(condition));
+std::vector<Condition> conditions(const Ways& ways, const std::string& table, const std::string& self,
+                                  const std::vector<std::size_t>& all, const std::vector<std::size_t>& some) {
+  struct Chosen {
+    std::size_t key;
+    std::vector<int> words, of_all;
+  };
+  std::vector<Chosen> result;
+  for (std::size_t key = 0; key < ways.keys().size(); ++key) {
+    if (ways.keys()[key] == self) continue;
+    Chosen chosen{key, ways.chosen(some, key), ways.chosen(all, key)};
+    if (chosen.words.size() < chosen.of_all.size()) result.push_back(std::move(chosen));
   }
-  const auto chooses = [&](const std::vector<Condition>& tried) {
-    return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](const Words& words) {
-      return std::all_of(tried.begin(), tried.end(), [&](const Condition& c) { return holds(c, words); });
+  const auto chooses = [&](const std::vector<Chosen>& tried) {
+    return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](std::size_t way) {
+      return std::all_of(tried.begin(), tried.end(), [&](const Chosen& c) {
+        return std::find(c.words.begin(), c.words.end(), ways.chosen(way, c.key)) != c.words.end();
+      });
     }));
   };
   const auto leave_out = [&](const auto& may_go) {
     for (std::size_t i = result.size(); i-- > 0;) {
+      if (!may_go(result[i])) continue;
       auto without = result;
       without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
-      if (may_go(result[i]) && chooses(without) == some.size()) result = std::move(without);
+      if (chooses(without) == some.size()) result = std::move(without);
     }
   };
-  leave_out([&](const Condition& c) {
-    const auto words = words_of(all, c.key);
-    return has_none(c.words) || (has_none(words) && c.words.size() + 1 == words.size());
+  leave_out([&](const Chosen& c) {
+    return has_none(c.words) || (has_none(c.of_all) && c.words.size() + 1 == c.of_all.size());
   });
-  leave_out([&](const Condition& c) { return !below(table, c.key); });
+  leave_out([&](const Chosen& c) { return !below(table, ways.keys()[c.key]); });
   if (chooses(result) != some.size()) throw std::logic_error(fmt::format("what decides on {} is no single word", self));
-  return result;
+  std::vector<Condition> named;
+  for (const Chosen& c : result) {
+    named.push_back({ways.keys()[c.key], {}});
+    for (const int word : c.words) named.back().words.push_back(ways.word(c.key, word));
+  }
+  return named;
 }
 
 /// The leaves by their words, with what they say of each table.
 class Tables {
  public:
-  explicit Tables(const std::vector<Leaf>& leaves) {
-    for (const Leaf& leaf : leaves)
+  explicit Tables(const std::vector<Leaf>& leaves) : ways_(leaves) {
+    for (const Leaf& leaf : leaves) {
+      const std::size_t way = ways_.number(leaf.words);
       for (const toml::KeyNote& note : leaf.notes.keys) {
         if (std::find(order_.begin(), order_.end(), note.table) == order_.end()) order_.push_back(note.table);
-        opened_[note.table].insert(leaf.words);
+        opened_[note.table].insert(way);
         auto& keys = keys_[note.table];
         if (note.presence != toml::Presence::misplaced && std::find(keys.begin(), keys.end(), note.key) == keys.end())
           keys.push_back(note.key);
       }
-    for (const Leaf& leaf : leaves) add(leaf);
+    }
+    for (const Leaf& leaf : leaves) add(leaf, ways_.number(leaf.words));
   }
 
   [[nodiscard]] std::vector<Table> tables() const {
@@ -285,50 +329,51 @@ class Tables {
     for (const std::string& name : order_) {
       Table table{name, {}, {}};
       const auto& opened = opened_.at(name);
-      const std::vector<Words> all(opened.begin(), opened.end());
+      const std::vector<std::size_t> all(opened.begin(), opened.end());
       for (const std::string& key : keys_.at(name)) table.keys.push_back(key_of(name, key, all));
       for (const auto& [relation, some] : relations_)
         if (relation.table == name)
-          table.relations.push_back({relation, conditions(name, "", all, {some.begin(), some.end()})});
+          table.relations.push_back({relation, conditions(ways_, name, "", all, {some.begin(), some.end()})});
       result.push_back(std::move(table));
     }
     return result;
   }
 
  private:
-  void add(const Leaf& leaf) {
-    for (const toml::KeyNote& note : leaf.notes.keys) add_to(found_[{note.table, note.key}][leaf.words], note);
+  void add(const Leaf& leaf, std::size_t way) {
+    for (const toml::KeyNote& note : leaf.notes.keys) add_to(found_[{note.table, note.key}][way], note);
     std::set<std::string> here;
     for (const toml::KeyNote& note : leaf.notes.keys) here.insert(note.table);
-    for (auto& [place, by_words] : found_)
-      if (const auto at = by_words.find(leaf.words); at != by_words.end() && here.contains(place.first))
+    for (auto& [place, by_way] : found_)
+      if (const auto at = by_way.find(way); at != by_way.end() && here.contains(place.first))
         at->second.required = at->second.required && required_at_last(leaf, place.first, place.second);
-    for (const toml::KeyRelation& relation : leaf.notes.relations) relations_[relation].insert(leaf.words);
+    for (const toml::KeyRelation& relation : leaf.notes.relations) relations_[relation].insert(way);
   }
 
-  [[nodiscard]] Key key_of(const std::string& table, const std::string& name, const std::vector<Words>& all) const {
+  [[nodiscard]] Key key_of(const std::string& table, const std::string& name,
+                           const std::vector<std::size_t>& all) const {
     Key key{name, false, {}};
-    std::vector<std::pair<Found, std::vector<Words>>> classes;
-    for (const auto& by_words : found_.at({table, name})) {
-      const Words& words = by_words.first;
-      const Found& found = by_words.second;
+    std::vector<std::pair<Found, std::vector<std::size_t>>> classes;
+    for (const auto& [way, found] : found_.at({table, name})) {
       if (!found.asked) continue;
       key.decides = key.decides || found.decides;
-      const auto at = std::find_if(classes.begin(), classes.end(), [&](const auto& c) { return like(c.first, found); });
-      if (at == classes.end()) classes.push_back({found, {words}});
-      else at->second.push_back(words);
+      const Found& one = found;
+      const auto at = std::find_if(classes.begin(), classes.end(), [&](const auto& c) { return like(c.first, one); });
+      if (at == classes.end()) classes.push_back({found, {way}});
+      else at->second.push_back(way);
     }
     for (const auto& [found, some] : classes)
       key.forms.push_back(
-          {found.shapes, found.required, found.absent, conditions(table, dotted(table, name), all, some)});
+          {found.shapes, found.required, found.absent, conditions(ways_, table, dotted(table, name), all, some)});
     return key;
   }
 
+  Ways ways_;
   std::vector<std::string> order_;
-  std::map<std::string, std::set<Words>> opened_;
+  std::map<std::string, std::set<std::size_t>> opened_;
   std::map<std::string, std::vector<std::string>> keys_;
-  std::map<std::pair<std::string, std::string>, std::map<Words, Found>> found_;
-  std::map<toml::KeyRelation, std::set<Words>> relations_;
+  std::map<std::pair<std::string, std::string>, std::map<std::size_t, Found>> found_;
+  std::map<toml::KeyRelation, std::set<std::size_t>> relations_;
 };
 
 }  // namespace
@@ -372,10 +417,10 @@ bool same(const ValueShape& a, const ValueShape& b) {
          std::equal(a.ranges.begin(), a.ranges.end(), b.ranges.begin(), b.ranges.end(), same_range);
 }
 
-Reference survey(const Ask& ask, const std::vector<toml::TomlValue>& starts) {
+Reference survey(const Ask& ask, const std::vector<toml::TomlValue>& starts, int most_others) {
   Reference reference;
   std::vector<Leaf> leaves;
-  for (const toml::TomlValue& start : starts) collect(ask, start, {}, leaves, reference.documents);
+  for (const toml::TomlValue& start : starts) collect(ask, start, {}, most_others, leaves, reference.documents);
   reference.tables = Tables(leaves).tables();
   return reference;
 }

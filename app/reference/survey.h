@@ -1,5 +1,6 @@
 // All keys of a file format, found by asking its reader: it reads documents that grow by every key that it asks for,
-// one document for every way in which the words of its deciding keys (`type`, ..) can be chosen.
+// one document for every way in which the words of its deciding keys (`type`, ..) can be chosen, most of them the first
+// ones.
 #pragma once
 
 #include <functional>
@@ -56,10 +57,15 @@ struct Reference {
 /// The keys that a reader asks of a document. Returns what is wrong with the document.
 using Ask = std::function<std::vector<Diagnostic>(const toml::TomlValue& document, toml::KeyNotes& notes)>;
 
+/// So many deciding keys at once have another word than their first one: all choices of all keys would be tens of
+/// thousands of documents. A test tries one more.
+inline constexpr int kMostOthers = 2;
+
 /// @param starts  tables from which documents grow: what a reader's answer depends on besides deciding keys. A key is
 ///                required when it is so from every start.
 /// Throws std::logic_error where the presence of a key depends on anything else.
-[[nodiscard]] Reference survey(const Ask& ask, const std::vector<toml::TomlValue>& starts);
+[[nodiscard]] Reference survey(const Ask& ask, const std::vector<toml::TomlValue>& starts,
+                               int most_others = kMostOthers);
 
 /// "gear.type" of a table and a key.
 [[nodiscard]] std::string dotted(const std::string& table, const std::string& key);

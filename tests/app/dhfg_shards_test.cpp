@@ -85,7 +85,8 @@ TEST(StudyDhfg, InShardsAndAfterAKillTheSameAsInOnePiece) {
   const auto nothing = run_program(dhfg_of(file, one, "1/1"));
   ASSERT_EQ(nothing.exit_code, 0) << nothing.err;
   EXPECT_NE(nothing.out.find("20 samples in " + one + "/samples.1of1.jsonl, 0 of them new"), std::string::npos);
-  for (const std::string& name : kDhfgMerged) EXPECT_EQ(file_text(one + "/" + name), file_text(cut + "/" + name)) << name;
+  for (const std::string& name : kDhfgMerged)
+    EXPECT_EQ(file_text(one + "/" + name), file_text(cut + "/" + name)) << name;
 
   write_file(file, replaced(kSmallStudy, "half_face = 6.0", "half_face = 6.5"));
   const auto other = run_program(dhfg_of(file, cut, "2/3"));

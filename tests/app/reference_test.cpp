@@ -128,6 +128,13 @@ TEST(Reference, HasWhatAReaderAsksFor) {
   EXPECT_EQ(found.documents.size(), 2U);
 }
 
+/// Documents in which more deciding keys have other words than their first ones show no other key.
+TEST(Reference, MoreWordsAtOnceShowNothingElse) {
+  const Format usual = reference::job_format(), more = reference::job_format(reference::kMostOthers + 1);
+  EXPECT_GT(more.reference.documents.size(), 2 * usual.reference.documents.size());
+  EXPECT_EQ(reference::markdown_sections(usual), reference::markdown_sections(more));
+}
+
 /// What decides on a key must be one word of the file.
 TEST(Reference, RefusesAReaderThatNoWordExplains) {
   const reference::Ask ask = [](const toml::TomlValue& document, toml::KeyNotes& notes) {
