@@ -118,7 +118,10 @@ std::vector<job::MissingKey> LibraryShelf::missing(const Tool& tool, Route route
   if (type == all.end()) return all;
   type->shape.words = words_of(route);
   for (const std::string& word : words_of(route)) {
-    const toml::TomlTable kind{{{"type", {}, {{}, {word}}}}};
+    toml::TomlTable kind;
+    toml::TomlEntry& entry = kind.entries.emplace_back();
+    entry.key = "type";
+    entry.value.data = word;
     for (const job::MissingKey& key : job::read_library_tool(tool.known, with(tool.said, kind)).missing)
       if (!is_there(all, key.key)) all.push_back(key);
   }

@@ -50,13 +50,10 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_face(const Wishes& wishes) 
   const double width = wishes.at(Quantity::outer) - wishes.at(Quantity::inner),
                least = kLeastDoubleModules * wishes.at(Quantity::module);
   if (wishes.gear == Gear::double_helical && width < least)
-    return std::vector{Diagnostic{
-        DiagnosticKind::refused_input,
-        {},
-        fmt::format(
-            "--outer: {:.4g} mm of teeth have no room for two rings and the groove between them, which take {:.4g} "
-            "mm: more teeth, fewer teeth of the shaper or less helix angle make room",
-            width, least)}};
+    return std::vector{
+        fail("--outer: {:.4g} mm of teeth have no room for two rings and the groove between them, which take {:.4g} "
+             "mm: more teeth, fewer teeth of the shaper or less helix angle make room",
+             width, least)};
   auto made = face_gear::FaceGear::make(whole_face_parameters(wishes));
   if (auto* refusals = made.refused()) return located(std::move(*refusals));
   ChosenGear chosen;
@@ -186,11 +183,9 @@ Expected<ChosenMachine, std::vector<Diagnostic>> choose_machine(const Wishes& wi
   if (!file) return std::vector{file.error()};
   const bool shaper = file->kind == machines::MachineKind::gear_shaper;
   if (shaper != (wishes.route == Route::shaped))
-    return std::vector{Diagnostic{DiagnosticKind::usage,
-                                  {},
-                                  fmt::format("--machine: {} is a {}, and {} needs a {}", wishes.machine,
-                                              shaper ? "gear shaper" : "milling machine", word_of(*wishes.route),
-                                              shaper ? "milling machine" : "gear shaper")}};
+    return std::vector{fail_as(DiagnosticKind::usage, "--machine: {} is a {}, and {} needs a {}", wishes.machine,
+                               shaper ? "gear shaper" : "milling machine", word_of(*wishes.route),
+                               shaper ? "milling machine" : "gear shaper")};
   ChosenMachine chosen;
   chosen.file = *path;
   if (shaper) {
