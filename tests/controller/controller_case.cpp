@@ -23,12 +23,13 @@
 #include "postproc/readback/reader.h"
 #include "postproc/readback/run_time.h"
 #include "tests/controller/joint_record.h"
+#include "tests/controller/short_program.h"
 
 namespace toothpath {
 namespace {
 
 namespace fs = std::filesystem;
-using test::JointVector, test::PathCorner;
+using test::JointVector, test::PathCorner, test::short_program;
 
 // The record is printed with six digits after the point.
 constexpr double kPrinted = 1e-6;    // mm and deg
@@ -168,32 +169,6 @@ std::string remap(int code, int kinematics_type) {
   return fmt::format("o<{0}remap> sub\nM68 E3 Q{1}\nM66 E0 L0\no<{0}remap> endsub\nM2\n", code, kinematics_type);
 }
 
-/// The program with these teeth of every operation instead of all, and with another word for corners where asked. What
-/// the controller runs is what we read. Teeth stand in a loop, or are written out behind (TOOTH k).
-Result<std::string> shortened(const std::string& text, const std::string& teeth, const std::string& corners_line) {
-  std::vector<std::string> counts;
-  std::istringstream list(teeth), in(text);
-  for (std::string count; std::getline(list, count, ',');) counts.push_back(count);
-  const std::regex loop(R"(\[#1 LT (\d+)\])"), tooth(R"(\(TOOTH (\d+)\))"), corners(R"(^(G64 P[0-9.]+ Q0|G61)$)");
-  std::string out;
-  std::size_t operations = 0;
-  bool dropped = false;
-  for (std::string line; std::getline(in, line);) {
-    std::smatch m;
-    if (line.rfind("(OP ", 0) == 0 && ++operations > counts.size())
-      return fail("the program has more operations than \"{}\"", teeth);
-    if (std::regex_search(line, m, tooth)) dropped = std::stoi(m[1]) >= std::stoi(counts.at(operations - 1));
-    if (line.rfind("G94 F", 0) == 0 || line == "M5") dropped = false;  // the end of the operation
-    if (dropped) continue;
-    if (std::regex_search(line, loop))
-      line = std::regex_replace(line, loop, "[#1 LT " + counts.at(operations - 1) + "]");
-    if (corners_line != "written") line = std::regex_replace(line, corners, corners_line);
-    out += line + "\n";
-  }
-  if (operations < counts.size()) return fail("the program has fewer operations than \"{}\"", teeth);
-  return out;
-}
-
 Status write(const fs::path& file, const std::string& text) {
   std::ofstream out(file, std::ios::binary);
   out << text;
@@ -206,7 +181,7 @@ Status prepare(const Case& c, const std::string& program, const fs::path& folder
                const std::string& corners, const Settings& settings) {
   const std::string text = read(program);
   if (text.empty()) return fail("{} is missing or empty", program);
-  const auto part = shortened(text, teeth, corners);
+  const auto part = short_program(text, teeth, corners);
   if (!part) return part.error();
   std::string tools, offsets;
   for (const tool::ToolAssembly& t : c.job.tools)
@@ -214,7 +189,7 @@ Status prepare(const Case& c, const std::string& program, const fs::path& folder
   if (!c.job.setup || c.job.setup->work_offset != "G54") return fail("the job must stand in G54");
   const Vec3 at = c.job.setup->work_offset_at_mm;
   offsets = fmt::format("5220\t1\n5221\t{}\n5222\t{}\n5223\t{}\n", at.x(), at.y(), at.z());
-  const auto as_written = shortened(text, teeth, "written");
+  const auto as_written = short_program(text, teeth, "written");
   if (!as_written) return as_written.error();
   const std::pair<const char*, std::string> files[] = {
       {"as_written.ngc", *as_written},   {"machine.ini", ini(c, settings)},

@@ -66,7 +66,7 @@ run() {
 
 # The jobs: a fixed tool axis; one that turns in the passes, as joints, and with TCP: the controller's own kinematics make the joints;
 # finger mills, where Y and C move together in every cut.
-for job in spur spur_tcp spur_turned short short_tcp bevel line; do mkdir "$work/$job"; done
+for job in spur spur_tcp spur_turned short short_tcp short_turned bevel line; do mkdir "$work/$job"; done
 cp "$root/samples/spur_quick.toml" "$work/spur/job.toml"
 cp "$root/samples/short_tool.toml" "$work/short/job.toml"
 cp "$root/samples/spur_quick.toml" "$work/spur_tcp/job.toml"
@@ -75,9 +75,11 @@ cp "$root/samples/bevel_trunnion.toml" "$work/bevel/job.toml"
 cp "$root/samples/spur_line.toml" "$work/line/job.toml"
 cp "$root/samples/short_tool.toml" "$work/short_tcp/job.toml"
 sed 's/^tcp = "none"/tcp = "angles"/' "$root/machines/data/xyzac_trt.toml" >"$work/short_tcp/xyzac_trt.toml"
-# The first of these with one tooth in the text: the program turns a work offset to the others.
-cp "$work/spur_tcp/"*.toml "$work/spur_turned/"
-sed -i 's/^tcp_on = .*/index_offset = "G59.3"\n&/' "$work/spur_turned/"xyzac_*.toml
+# Those with TCP with one tooth in the text: the program turns a work offset to the others.
+for job in spur short; do
+  cp "$work/${job}_tcp/"*.toml "$work/${job}_turned/"
+  sed -i 's/^tcp_on = .*/index_offset = "G59.3"\n&/' "$work/${job}_turned/"xyzac_*.toml
+done
 
 run spur_stop spur 1,1 G61.1 200 1000 600
 run spur spur 1,1 written 2000 1000 600
@@ -91,6 +93,8 @@ run tcp short_tcp 0,1 written 2000 1000 900
 # Later teeth: the zero of C moves (G52), with TCP a work offset turns as well.
 run spur_index spur 2,2 written 2000 1000 600
 run spur_turned spur_turned 2,2 written 2000 1000 600
+run index short 0,2 written 2000 1000 900
+run turned short_turned 0,2 written 2000 1000 900
 # Under G64 as well, the rest of fixed and turning axis, joints and TCP. Our reader refuses G64 where a cut turns a rotary: those two
 # show why.
 run spur_tcp spur_tcp 1,1 written 2000 1000 600
