@@ -97,6 +97,7 @@ CommandOutcome write_program(const ProbeRequest& request, const Inputs& in, app:
   program.job_name = in.job.name;
   program.machine_name = in.machine.name;
   program.work_offset = setup.work_offset;
+  program.offset_check = text::offset_check_lines(*dialect, setup.work_offset, controls::axis_letters(in.machine));
   if (dialect->datum != nullptr) program.datum = dialect->datum(setup.work_offset);
   program.tool = request.tool.value_or(0);
   program.number = kProgramNumber;

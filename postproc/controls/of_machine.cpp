@@ -340,6 +340,12 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
   return d;
 }
 
+std::array<char, 5> axis_letters(const machines::Machine& machine) {
+  std::array<char, 5> letters{'X', 'Y', 'Z', 0, 0};
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) letters[3 + k] = machine.chain.rotary(k).letter;
+  return letters;
+}
+
 joints::AxisOptions axis_options(const text::NcDialect& words, const machines::Machine& machine) {
   joints::AxisOptions options;
   options.format = words.format;
@@ -390,10 +396,9 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
     c.coolants[coolant] = words;
     c.coolant_words.insert(c.coolant_words.end(), {words.on, words.off});
   }
-  c.letters = {'X', 'Y', 'Z', 0, 0};
+  c.letters = axis_letters(machine);
   for (std::size_t i = 0; i < 3; ++i) c.rapid_speed[i] = machine.chain.linear[i].max_speed;
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
-    c.letters[3 + k] = machine.chain.rotary(k).letter;
     c.rapid_speed[3 + k] = degrees(machine.chain.rotary(k).max_speed);
     c.rollover[3 + k] = machine.chain.rotary(k).rollover;
     c.clamps[3 + k] = machine.chain.rotary(k).clamp;

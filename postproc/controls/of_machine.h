@@ -2,6 +2,7 @@
 // with the job's tools.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,6 +27,9 @@ namespace toothpath::controls {
 /// The words of the control that a machine file names, with the machine's own digits, TCP codes, smoothing and
 /// coolants. Errors: the first of judge(); smoothing that is not stated whole.
 [[nodiscard]] Result<text::NcDialect> dialect_of(const machines::Machine& machine);
+
+/// X Y Z and the rotaries in the machine's order; 0: no such axis.
+[[nodiscard]] std::array<char, 5> axis_letters(const machines::Machine& machine);
 
 /// Options of the axis program that follow from the words and the machine; the tolerances keep their defaults.
 [[nodiscard]] joints::AxisOptions axis_options(const text::NcDialect& words, const machines::Machine& machine);

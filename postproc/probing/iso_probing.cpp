@@ -52,6 +52,7 @@ std::string linuxcnc_text(const ProbeProgram& program) {
   linuxcnc_subs(out);
   out.add("G21 G17 G90 G94 G40 G49 G80");
   out.add(program.work_offset);
+  for (const std::string& line : program.offset_check) out.add(line);
   begin(out, program);
   out.add(fmt::format("G43 H{}", program.tool));
   out.add("(LOGOPEN,probe_results.txt)");

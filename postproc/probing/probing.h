@@ -22,8 +22,9 @@ struct ProbeTouch {
 
 struct ProbeProgram {
   std::string job_name, machine_name;
-  std::string work_offset;  ///< its name
-  int datum = 0;            ///< its number, on controls that know presets
+  std::string work_offset;                ///< its name
+  std::vector<std::string> offset_check;  ///< lines that end the program where it turns; empty: the control has none
+  int datum = 0;                          ///< its number, on controls that know presets
   int tool = 0;
   int number = 0;                                    ///< of the program, where the control wants one
   double ball_diameter_mm = 0, probe_length_mm = 0;  ///< gauge line to the centre of the ball

@@ -1,7 +1,9 @@
 #include "postproc/readback/block.h"
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
+#include <span>
 
 namespace toothpath::readback {
 namespace {
@@ -72,6 +74,13 @@ class Parser {
     i_ = end + 1;
     label(text, "OP ", block_.operation);
     label(text, "TOOTH ", block_.tooth);
+    block_.aborts = block_.aborts || (o_words_ && is_abort(text));
+  }
+  static bool is_abort(std::string_view text) {
+    constexpr std::string_view kAbort = "ABORT,";
+    text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+    return text.size() >= kAbort.size() && std::equal(kAbort.begin(), kAbort.end(), text.begin(),
+                                                      [](char wanted, char c) { return wanted == upper(c); });
   }
   void label(std::string_view text, std::string_view name, std::int32_t& slot) {
     if (text.size() <= name.size() || !is_digit(text[name.size()])) return;
@@ -298,5 +307,22 @@ class Parser {
 }  // namespace
 
 Result<NcBlock> parse_nc_block(std::string_view line, bool o_words) { return Parser(line, o_words).parse(); }
+
+std::vector<std::size_t> squares_above_zero(const NcBlock& block, const NcValue& condition) {
+  using K = NcStep::Kind;
+  std::span<const NcStep> rest =
+      std::span(block.steps)
+          .subspan(static_cast<std::size_t>(condition.first), static_cast<std::size_t>(condition.count));
+  std::vector<std::size_t> parameters;
+  while (rest.size() >= 3 && rest[0].kind == K::parameter && rest[1].kind == K::parameter &&
+         rest[0].value == rest[1].value && rest[2].kind == K::multiply) {
+    const std::size_t used = parameters.empty() ? 3 : 4;
+    if (rest.size() < used || (used == 4 && rest[3].kind != K::add)) return {};
+    parameters.push_back(static_cast<std::size_t>(rest[0].value));
+    rest = rest.subspan(used);
+  }
+  const bool ends = rest.size() == 2 && rest[0].kind == K::number && rest[0].value == 0 && rest[1].kind == K::gt;
+  return ends ? parameters : std::vector<std::size_t>{};
+}
 
 }  // namespace toothpath::readback

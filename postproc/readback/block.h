@@ -61,7 +61,8 @@ struct NcBlock {
   std::int32_t tooth = -1;         ///< k of the comment (TOOTH k)
   std::vector<std::string> names;  ///< of parameters, #<name>: lower case without blanks
   bool percent = false;
-  bool skip = false;  ///< begins with a slash: left out where the switch of the control is on
+  bool skip = false;    ///< begins with a slash: left out where the switch of the control is on
+  bool aborts = false;  ///< has the comment (ABORT, ..), with which LinuxCNC ends a program
 };
 
 /// Parses one line without its end.
@@ -69,6 +70,9 @@ struct NcBlock {
 /// comments, a character that is no part of a word, a number without digits or with an exponent, lines of more than
 /// 256 characters, expressions nested deeper than 16.
 [[nodiscard]] Result<NcBlock> parse_nc_block(std::string_view line, bool o_words);
+
+/// The parameters of a condition "#1*#1+#2*#2 GT 0", which holds where one of them is not 0. Empty: it is another one.
+[[nodiscard]] std::vector<std::size_t> squares_above_zero(const NcBlock& block, const NcValue& condition);
 
 /// Numbered parameters of a program; behind them those of the control itself, which LinuxCNC's programs may read.
 inline constexpr int kLastOfProgram = 5000, kLastParameter = 5999;

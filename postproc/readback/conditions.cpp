@@ -24,6 +24,12 @@ std::string unchecked_text(const std::string& at, int tool, const std::string& t
       "{} cuts with T{}, which no check has met since it came{}: the job asks for one (program.tool_check)", at, tool,
       times);
 }
+std::string unseen_text(const std::string& at, const std::string& times) {
+  return fmt::format(
+      "{} cuts from a work offset whose turn R and zeros of the rotaries are taken as 0, and no line of the program "
+      "looks at them{}: the lines o99 ahead of the first motion of a program from run do",
+      at, times);
+}
 void keep_least(ValueAt& at, double value, int line) {
   if (at.line == 0 || value < at.value) at = {value, line};
 }
@@ -96,6 +102,7 @@ void ConditionJudge::add(const ExecutedMove& m) {
       else end_of_stretch();  // a turn between cuts, with TCP
       if (m.in_doubt) note(Kind::stop_in_doubt, 0, m, 0);
       if (asked_.tool_checks && !m.checked) note(Kind::unchecked, m.tool, m, 0);
+      if (m.offset_unseen) note(Kind::offset_unseen, 0, m, 0);
       if (m.dwell_min > 0 && !up_) note(Kind::dwell, 0, m, double(m.dwell_min) * 60);
     }
   }
@@ -280,6 +287,7 @@ std::string ConditionJudge::text(Kind kind, int operation, int detail, const Fau
                          control_.letters[a], times, control_.clamps[a]->on);
     }
     case Kind::unchecked: return unchecked_text(at, detail, times);
+    case Kind::offset_unseen: return unseen_text(at, times);
     case Kind::dwell:
       return fmt::format("{} waits {:.6g} s in a cut{}: the tool rubs where it stands", at, f.worst, times);
     case Kind::short_block:

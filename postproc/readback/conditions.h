@@ -62,8 +62,8 @@ struct ConditionsFound {
 /// than `speed_factor`; another tool than the job's; the job's coolant not on. Warnings: a cut more than 1.5 times as
 /// fast as asked (or `feed_factor`, if that is less); S off the job's; a coolant that the job has off; cuts in which a
 /// rotary stands that the machine could hold and the program does not; cuts behind a stop that may have ended spindle
-/// and coolant; cuts with a tool that no check has met, where the job asks for checks; a dwell in a cut; blocks shorter
-/// than `limits.min_block_ms`.
+/// and coolant; cuts with a tool that no check has met, where the job asks for checks; cuts from a work offset at whose
+/// turn and rotaries the program could look and does not; a dwell in a cut; blocks shorter than `limits.min_block_ms`.
 class ConditionJudge {
  public:
   /// All must outlive it.
@@ -93,6 +93,7 @@ class ConditionJudge {
     stop_in_doubt,
     unclamped,
     unchecked,
+    offset_unseen,
     dwell,
     short_block  // warnings
   };

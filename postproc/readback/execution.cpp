@@ -631,6 +631,7 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   e.coolants = coolants_;
   e.in_doubt = spindle_doubt_ || coolant_doubt_;
   e.checked = checked_;
+  e.offset_unseen = offset_unseen_;
   e.dwell_min = static_cast<float>(std::exchange(dwell_min_, 0));
   e.corners = path_mode_;
   e.tolerance_mm = static_cast<float>(path_tolerance_mm_);

@@ -127,6 +127,8 @@ class NcExecution {
   Problem select_offset(const std::string& name);
   /// Writes NcControl::index_offset, which must not be in force. @param at_mm nothing: it stays where it was written
   Problem write_offset(const std::optional<Vec3>& at_mm, double turn_deg);
+  /// What the work offset turns and moves of the rotaries is taken as 0, and the program has not looked.
+  void set_offset_unseen(bool unseen) { offset_unseen_ = unseen; }
   Problem set_length(int tool);  ///< tool length compensation with the length of this tool
   void drop_length() { length_.reset(); }
   /// The control may leave corners by this. @param linear_only it does not hold for rotaries: feed blocks must not turn
@@ -241,6 +243,7 @@ class NcExecution {
   std::optional<Vec3> offset_;
   std::optional<WrittenOffset> written_;
   bool in_written_ = false;  // words count from it
+  bool offset_unseen_ = false;
   timing::Corners path_mode_ = timing::Corners::exact;
   double path_tolerance_mm_ = 0;
   double blend_mm_ = 0;

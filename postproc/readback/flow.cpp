@@ -96,6 +96,7 @@ Status NcFlow::run(const Words& words) {
     if (block == nullptr) return problem;
     const NcBlock& b = *block;
     std::optional<Diagnostic> bad;
+    if (b.aborts) return here(1, "(ABORT, ..) ends the program there: what stands behind it is not executed");
     if (b.percent) {
       if (line_ != 0) return here(1, "the program ends without M2 or M30");
     } else if (b.o_word != OWord::none) {
@@ -412,6 +413,14 @@ bool NcFlow::comes_round(Frame& loop) const {
   return false;
 }
 
+/// A loop that is not entered, and would have ended the program.
+void NcFlow::note_zeros(const NcBlock& head) {
+  if (head.o_word != OWord::loop_while) return;
+  const auto parameters = squares_above_zero(head, head.arguments.front());
+  const auto first = parse_nc_block(lines_[line_ + 1], o_words_);
+  if (first && first->aborts) zeros_.insert(parameters.begin(), parameters.end());
+}
+
 std::optional<Diagnostic> NcFlow::loop_head(const NcBlock& b) {
   const auto v = value(b, b.arguments.front(), 1);
   if (!v) return v.error();
@@ -438,6 +447,7 @@ std::optional<Diagnostic> NcFlow::loop_head(const NcBlock& b) {
                                frames_.back().turns));
   if (!again) {
     if (running) frames_.pop_back();
+    else note_zeros(b);
     pc_ = ends_.at(line_) + 1;
   }
   return std::nullopt;

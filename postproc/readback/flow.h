@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -41,6 +42,11 @@ class NcFlow {
   [[nodiscard]] Result<double> value(const NcBlock& b, const NcValue& v, int column) const;
   /// What a parameter of the control itself holds: programs may read it.
   void tell(std::size_t parameter, double value) { set_parameter(parameter, value, true); }
+
+  /// A loop that is not entered has shown that this parameter is 0: its condition is a sum of squares above 0, and in
+  /// it stands (ABORT, ..).
+  [[nodiscard]] bool seen_zero(std::size_t parameter) const { return zeros_.count(parameter) != 0; }
+  [[nodiscard]] std::size_t seen_zeros() const { return zeros_.size(); }
 
   /// M98, M97, M99, M2.
   [[nodiscard]] bool has_program(std::int64_t number) const { return labels_.count(number) != 0; }
@@ -95,6 +101,7 @@ class NcFlow {
   std::optional<Diagnostic> loop_head(const NcBlock& b);
   void set_parameter(std::size_t n, double value, bool set);
   [[nodiscard]] bool comes_round(Frame& loop) const;
+  void note_zeros(const NcBlock& head);
 
   const std::string& file_;
   bool o_words_;
@@ -117,6 +124,7 @@ class NcFlow {
   std::vector<std::size_t> locals_;                     // of them those that belong to a sub-program
   std::vector<double> parameters_;
   std::vector<bool> parameter_set_;
+  std::set<std::size_t> zeros_;
 };
 
 }  // namespace toothpath::readback

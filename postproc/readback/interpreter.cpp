@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "geometry/base/angle.h"
 #include "postproc/readback/flow.h"
@@ -15,6 +16,7 @@ namespace {
 
 constexpr unsigned kOffsets = 12;  // modal group
 constexpr unsigned kZeros = 32;    // beside the modal groups: G52
+constexpr int kTurnBehindX = 9;    // parameters of a work offset: X Y Z A B C U V W R
 
 class Interpreter {
  public:
@@ -24,7 +26,7 @@ class Interpreter {
         language_(language),
         flow_(text, file, language.o_words, control),
         execution_(control, language.rules, sink) {
-    for (const auto& [name, at] : control.work_offsets) tell_origin(name, at);
+    for (const auto& [name, at] : control.work_offsets) tell_offset(name, at, 0);
   }
 
   Status run() {
@@ -325,12 +327,27 @@ class Interpreter {
     return std::nullopt;
   }
 
-  /// Parameters of the control hold the origin of a work offset.
-  void tell_origin(const std::string& name, const Vec3& at_mm) {
+  /// Parameters of the control hold the origin of a work offset and its turn: X Y Z A B C, and R. Nothing: where it is
+  /// they say already.
+  void tell_offset(const std::string& name, const std::optional<Vec3>& at_mm, double turn_deg) {
     const int number = language_.number_of_offset == nullptr ? -1 : language_.number_of_offset(name);
     if (number < 0) return;
-    for (int i = 0; i < 6; ++i)
-      flow_.tell(static_cast<std::size_t>(language_.origin_parameter(number) + i), i < 3 ? at_mm[i] : 0);
+    for (int i = 0; at_mm && i < 6; ++i)
+      flow_.tell(static_cast<std::size_t>(language_.origin_parameter(number) + i), i < 3 ? (*at_mm)[i] : 0);
+    flow_.tell(static_cast<std::size_t>(language_.origin_parameter(number) + kTurnBehindX), turn_deg);
+  }
+
+  /// Has the program looked at what is taken as 0 of the work offset of the shop, its turn and the zeros of its
+  /// rotaries?
+  void look_at_offset() {
+    if (language_.origin_parameter == nullptr || shop_offset_ < 0 || looked_ == flow_.seen_zeros()) return;
+    looked_ = flow_.seen_zeros();
+    const auto x = static_cast<std::size_t>(language_.origin_parameter(shop_offset_));
+    bool seen = flow_.seen_zero(x + kTurnBehindX);
+    for (std::size_t a = 3; a < 5; ++a)
+      if (const char letter = control_.letters[a]; letter >= 'A' && letter <= 'C')
+        seen = seen && flow_.seen_zero(x + 3 + static_cast<std::size_t>(letter - 'A'));
+    execution_.set_offset_unseen(!seen);
   }
 
   /// G10 L2 P: where the work offset that the machine file leaves to programs is, and how it is turned.
@@ -355,7 +372,7 @@ class Interpreter {
     if (named != 0 && !all) return here(r.write_column, "G10 L2 names all axes of the machine or none");
     const auto at = named == 0 ? std::nullopt : std::optional(Vec3(r.move.axis[0], r.move.axis[1], r.move.axis[2]));
     if (auto bad = placed(r.write_column, execution_.write_offset(at, *r.turn))) return bad;
-    if (at) tell_origin(control_.index_offset, *at);
+    tell_offset(control_.index_offset, at, *r.turn);
     return std::nullopt;
   }
 
@@ -444,8 +461,13 @@ class Interpreter {
       if (auto bad = placed(r.column, execution_.set_speed(*r.s))) return bad;
     if (r.t)
       if (auto bad = placed(r.column, execution_.choose_tool(*r.t))) return bad;
-    if (!r.offset.empty())
+    if (!r.offset.empty()) {
       if (auto bad = placed(r.column, execution_.select_offset(r.offset))) return bad;
+      if (r.offset != control_.index_offset && language_.number_of_offset != nullptr) {
+        const int before = std::exchange(shop_offset_, language_.number_of_offset(r.offset));
+        if (shop_offset_ != before) looked_.reset();
+      }
+    }
     if (r.clears)
       if (auto bad = placed(r.column, execution_.clear_zeros())) return bad;
     if (auto bad = length(r)) return bad;
@@ -544,6 +566,7 @@ class Interpreter {
     r.move.machine_frame = r.g53;
     r.move.compensation = r.g43 && !r.tcp;
     r.move.own_feed = r.f.has_value();
+    look_at_offset();
     const auto& has = r.move.has;
     if (r.tcp && (has[0] || has[1] || has[3] || has[4] || motion_ != 0))
       return here(r.column, "G43.4 moves Z alone, with G0");
@@ -557,6 +580,8 @@ class Interpreter {
   NcFlow flow_;
   NcExecution execution_;
   int motion_ = -1;
+  int shop_offset_ = -1;               // number of the work offset of the shop that was selected last
+  std::optional<std::size_t> looked_;  // parameters that were seen to be 0 when it was looked at
   tool_check::Unsaid unsaid_;
   bool corners_said_ =
       false;  // how far the control leaves corners: G61, G61.1, G64 P, or G64 with what the machine states

@@ -119,6 +119,7 @@ struct ExecutedMove {
   bool known : 1 = false;          ///< all joints were known before and after
   bool in_doubt : 1 = false;       ///< a stop ahead may have ended spindle and coolant: the builder's business
   bool plane : 1 = false;          ///< in a tilted plane, or the turn of the rotaries to it
+  bool offset_unseen : 1 = false;  ///< turn and rotaries of the work offset are taken as 0, the program did not look
   bool checked : 1 = false;        ///< the tool was checked since it came into the spindle
   std::uint8_t clamped = 0;        ///< bit a: the rotary is held
   std::uint8_t coolants = 0;       ///< machines::bit_of: it is on

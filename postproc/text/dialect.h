@@ -118,7 +118,13 @@ struct NcDialect {
   /// For the graphics, ahead of `start`: {blank_top} {blank_bottom} {blank_length} {blank_radius} {blank_diameter}, of
   /// a ring also {bore_radius} {bore_diameter}. Empty: the control has no such words.
   NcLinesOfText blank, blank_ring;
-  NcLinesOfText start, end;           ///< of the program
+  NcLinesOfText start, end;  ///< of the program
+  /// Behind `start`, once: end the program where the work offset turns, or moves a rotary. {offset_squares}: the sum of
+  /// the squares of all that must be 0; {offset_words}: what it is, "A, C, R". Empty: the control has no such words.
+  NcLinesOfText offset_check;
+  /// What must hold of the work offset beside X Y Z, for who sets the machine up: {offset}, {datum}, and {rotaries},
+  /// "A, C".
+  std::string offset_trust;
   NcLinesOfText body_end;             ///< ahead of sub-programs that stand behind the main program
   NcLinesOfText retract;              ///< Z to its top, machine coordinates
   NcLinesOfText tool_call;            ///< behind the retract, where the tool changes: fetches it
@@ -178,7 +184,7 @@ struct NcDialect {
   int (*datum)(std::string_view work_offset) =
       nullptr;  ///< {datum}, the number of a work offset; null: the lines do not use it
   /// {index_datum}, the same for `NcLoop::index_offset`, and the parameter that holds the origin of such a number in X;
-  /// those of Y Z A B C follow.
+  /// those of Y Z A B C follow, and that of its turn about Z is the ninth behind it.
   int (*offset_number)(std::string_view work_offset) = nullptr;
   int (*origin_parameter)(int number) = nullptr;
 
@@ -205,6 +211,13 @@ struct NcDialect {
 [[nodiscard]] std::vector<std::string> names_of_own_lines(const NcDialect& dialect, bool tool);
 /// The first name in braces that is none of them; nothing: all are.
 [[nodiscard]] std::optional<std::string> unknown_name(std::string_view pattern, const std::vector<std::string>& names);
+
+/// `NcDialect::offset_check` and `offset_trust` for a work offset and the axes of a machine, 0: none. Empty where the
+/// dialect says nothing.
+[[nodiscard]] NcLinesOfText offset_check_lines(const NcDialect& dialect, const std::string& work_offset,
+                                               const std::array<char, 5>& letters);
+[[nodiscard]] std::string offset_trust(const NcDialect& dialect, const std::string& work_offset,
+                                       const std::array<char, 5>& letters);
 
 /// Words for a coolant that is not off.
 /// Errors: the control has none and the machine file names none. The message says which ones there are.

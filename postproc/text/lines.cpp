@@ -219,7 +219,7 @@ std::string first_tooth_comment(const joints::AxisProgram& program, const joints
 
 void NcLines::line(std::string_view text) {
   text_ += text;
-  end_line(text_.size() - text.size(), true);
+  end_line(text_.size() - text.size(), !text.starts_with(dialect_.comment_open));
 }
 
 void NcLines::comment(std::string_view text) {

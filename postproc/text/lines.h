@@ -18,7 +18,7 @@ class NcLines {
 
   explicit NcLines(const NcDialect& dialect) : dialect_(dialect) {}
 
-  /// A whole line.
+  /// A whole line; one that begins as a comment is no block.
   void line(std::string_view text);
   void comment(std::string_view text);
   /// The block that follows has this number, as an N word.

@@ -51,6 +51,7 @@ class Writer {
     values_["top"] = linear(program_.retract_z_mm);
     blank();
     fill(dialect_.start);
+    print(offset_check_lines(dialect_, program_.work_offset, program_.letters));
     fill(dialect_.own_start);
     for (std::size_t i = 0; i < program_.operations.size(); ++i) {
       operation(program_.operations[i], static_cast<int>(i));

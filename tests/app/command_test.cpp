@@ -551,6 +551,10 @@ TEST(Run, ASmallGearGoesTheWholeWay) {
     EXPECT_EQ(file_text(dir / (std::string("1/") + name)), file_text(dir / (std::string("2/") + name))) << name;
 
   EXPECT_NE(file_text(dir / "2/setup.html").find("<td>face gear, z 60, shaper z 20, "), std::string::npos);
+  EXPECT_NE(file_text(dir / "2/setup.html")
+                .find("<td>work offset, besides</td><td>A, C, R of G54 must be 0: the program looks and ends if they "
+                      "are not</td>"),
+            std::string::npos);
 
   // A refused run into the same directory leaves every one of its files, and says whose they are.
   const auto text_before = file_text(dir / "2/report.json");

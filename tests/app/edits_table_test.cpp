@@ -272,9 +272,11 @@ void edit_zeros(const Editable& p, Rows& out) {
   const auto turned = loop ? find(all, "^G59\\.3$") : std::nullopt;
   out.emplace_back("G52 of the index left out", loop ? dropped(all, "^G52 C\\[") : std::nullopt);
   out.emplace_back("G92.1 behind the teeth left out",
-                   loop ? dropped(all, "^G92\\.1$", *find(all, "^o\\d+ endwhile$")) : std::nullopt);
+                   loop ? dropped(all, "^G92\\.1$", *find(all, "^o1\\d+ endwhile$")) : std::nullopt);
   out.emplace_back("G59.3 left out", turned ? dropped(all, "^G59\\.3$") : std::nullopt);
   out.emplace_back("G54 behind G59.3 left out", turned ? dropped(all, "^G54$", *turned) : std::nullopt);
+  out.emplace_back("the look at the work offset left out",
+                   p.control() == "linuxcnc" ? dropped(all, "^o99 while", 0, 3) : std::nullopt);
   const std::string angle = "(^G10 L2 P9 .*R\\[)";
   auto sign = replaced(all, angle + "0-", "$1");
   if (!sign) sign = replaced(all, angle, "$010-");

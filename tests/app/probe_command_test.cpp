@@ -63,6 +63,10 @@ TEST(ProbeCommand, AGearThatStandsElsewhereIsCutWhereItStands) {
   const auto written = probe({});
   ASSERT_EQ(written.exit_code, 0) << written.err;
   const std::string text = file_text(dir / "probe/probe_setup.ngc");
+  const auto look =
+      text.find("\nG54\no99 while [#5224*#5224+#5226*#5226+#5230*#5230 GT 0]\n(ABORT, A, C, R OF G54 MUST BE 0)\n");
+  ASSERT_NE(look, std::string::npos);
+  EXPECT_LT(look, text.find("G53 G0"));
   const auto touches = touches_of(text);
   ASSERT_EQ(touches.size(), 16u);
 

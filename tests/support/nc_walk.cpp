@@ -226,7 +226,7 @@ class IsoWalker : public Walker {
  private:
   bool linuxcnc_flow(const std::string& code) {
     static const std::regex sub(R"(o(\d+) sub)"), endsub(R"(o(\d+) endsub)"), call(R"(o(\d+) call(?: (\[.*\]))?)"),
-        loop(R"(o(\d+) while \[(.*) LT (.*)\])"), again(R"(o(\d+) endwhile)"), assign(R"((#\d+)=(.*))"),
+        loop(R"(o(\d+) while \[(.*) (LT|GT) (.*)\])"), again(R"(o(\d+) endwhile)"), assign(R"((#\d+)=(.*))"),
         broken(R"(o(\d+) if \[\[#5070 EQ 0\] OR \[ABS\[#<_off>\] GT [0-9.]+\]\])"), off(R"(#<_off>=\[#5063.*\])");
     if (matches(code, off)) return true;
     if (matches(code, broken)) return at_ = line_behind("o" + found_[1].str() + " endif", at_), true;  // it is whole
@@ -241,7 +241,11 @@ class IsoWalker : public Walker {
     } else if (matches(code, endsub)) {
       back();
     } else if (matches(code, loop)) {
-      if (number(found_[2]) >= number(found_[3])) at_ = line_behind("o" + found_[1].str() + " endwhile", at_);
+      // A B C and R of G54, which the shop has left at 0.
+      for (const char* own : {"#5224", "#5225", "#5226", "#5230"}) variables_.emplace(own, 0);
+      const double left = number(found_[2]), right = number(found_[4]);
+      if (found_[3] == "LT" ? left >= right : left <= right)
+        at_ = line_behind("o" + found_[1].str() + " endwhile", at_);
     } else if (matches(code, again)) {
       const std::string begin = "o" + found_[1].str() + " while";
       do --at_;

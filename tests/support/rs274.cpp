@@ -11,7 +11,8 @@
 namespace toothpath::test {
 namespace fs = std::filesystem;
 
-Canonical interpret(const std::string& program, const std::string& name, const std::string& ini) {
+Canonical interpret(const std::string& program, const std::string& name, const std::string& ini,
+                    const std::string& parameters) {
   Canonical out;
   const char* given = std::getenv("TOOTHPATH_RS274");
   const std::string rs274 = given != nullptr ? given : std::string(TOOTHPATH_SOURCE_DIR) + "/.deps/rs274/rs274";
@@ -23,7 +24,7 @@ Canonical interpret(const std::string& program, const std::string& name, const s
   fs::create_directories(dir);
   std::ofstream(dir / "p.ngc") << program;
   std::ofstream(dir / "t.tbl") << "T1 P1 Z0 D4 ;\nT2 P2 Z0 D4 ;\n";
-  std::ofstream(dir / "v.var") << "";
+  std::ofstream(dir / "v.var") << parameters;
   if (!ini.empty()) std::ofstream(dir / "m.ini") << "[RS274NGC]\nPARAMETER_FILE = v.var\n" << ini;
   const std::string d = dir.string();
   const std::string command = "cd '" + d + "' && HOME='" + d + "' timeout 60 '" + rs274 + "'" +

@@ -15,6 +15,8 @@ struct Canonical {
 
 /// Runs a program with two tools T1, T2 of length zero and no offsets. A missing interpreter fails the test.
 /// @param name of the folder, of this process alone  @param ini text of an INI file; empty: none
-Canonical interpret(const std::string& program, const std::string& name, const std::string& ini = "");
+/// @param parameters lines of the parameter file, "5230 5": a number and its value; what is not there is 0
+Canonical interpret(const std::string& program, const std::string& name, const std::string& ini = "",
+                    const std::string& parameters = "");
 
 }  // namespace toothpath::test

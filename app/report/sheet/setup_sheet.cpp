@@ -42,6 +42,12 @@ std::string coolant_text(machines::Coolant coolant, const machines::Machine& mac
                : to_string(coolant);
 }
 
+/// What must hold of the work offset beside its place.
+std::string offset_text(const std::string& work_offset, const machines::Machine& machine) {
+  const auto dialect = controls::dialect_of(machine);
+  return dialect ? text::offset_trust(*dialect, work_offset, controls::axis_letters(machine)) : std::string();
+}
+
 void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part, const machines::Machine& machine,
                      const report::RunReport& report) {
   const joints::Setup& setup = *job.setup;
@@ -56,6 +62,8 @@ void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part,
   if (!report.name_on_control.empty()) sheet.row({"name on the control", report.name_on_control});
   if (!report.program_sha256.empty()) sheet.row({"SHA-256", report.program_sha256});
   sheet.row({"work offset", fmt::format("{} = machine {}", setup.work_offset, coordinates(setup.work_offset_at_mm))});
+  if (const std::string trust = offset_text(setup.work_offset, machine); !trust.empty())
+    sheet.row({"work offset, besides", trust});
   sheet.row({"gear origin, machine", coordinates(setup.origin_mm)});
   sheet.row({"gear origin, " + setup.work_offset, coordinates(setup.origin_mm - setup.work_offset_at_mm)});
   sheet.row({"gear axis", setup.axis_up ? "up: teeth towards the spindle, gear X along machine X"

@@ -72,6 +72,7 @@ text::NcDialect words() {
   d.tool_call = {"TOOL CALL {tool} Z S{speed}"};
   d.tool_keep = {"TOOL CALL S{speed}"};
   d.tool_next = {"TOOL DEF {next}"};
+  d.offset_trust = "preset {datum} has no basic rotation (SPA, SPB, SPC), and is 0 for {rotaries} and their offsets";
   d.tool_change = {"{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M3"};
   checks_of_tools(d);
   d.coolant = {{machines::Coolant::flood, {"M8", "M9"}}};  // M7 is none of its own

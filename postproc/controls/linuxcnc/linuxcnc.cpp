@@ -19,6 +19,13 @@ int number_of_offset(std::string_view name) {
 }
 int origin_parameter(int number) { return 5201 + 20 * number; }
 
+/// A while, which the loop of the teeth has too. Squares: EQ and NE let a difference of 0.0001 pass.
+void look_at_offset(text::NcDialect& d) {
+  d.offset_check = {"o99 while [{offset_squares} GT 0]", "(ABORT, {offset_words} OF {offset} MUST BE 0)",
+                    "o99 endwhile"};
+  d.offset_trust = "{offset_words} of {offset} must be 0: the program looks and ends if they are not";
+}
+
 text::NcDialect words() {
   text::NcDialect d;
   d.name = "linuxcnc";
@@ -28,6 +35,7 @@ text::NcDialect words() {
   d.max_line = 252;
   d.safe_start = {"G21 G17 G90 G94 G40 G49 G80", "G92.1"};
   d.start = {"{safe_start}", "{offset}", "G61"};
+  look_at_offset(d);
   d.retract = {"G53 G0 Z{top}"};
   d.tool_call = {"T{tool} M6"};
   d.tool_next = {"T{next}"};

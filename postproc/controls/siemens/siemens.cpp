@@ -42,6 +42,7 @@ text::NcDialect words() {
   d.blank = {"WORKPIECE(,\"\",,\"CYLINDER\",192,{blank_top},{blank_bottom},{blank_bottom},{blank_diameter})"};
   d.blank_ring = {
       "WORKPIECE(,\"\",,\"PIPE\",448,{blank_top},{blank_bottom},{blank_bottom},{blank_diameter},{bore_diameter})"};
+  d.offset_trust = "{offset} and the basic frames have no rotation, and are 0 for {rotaries}";
   d.start = {"{safe_start}", "{offset}", "G641 ADIS={blend}"};
   d.retract = {"SUPA G0 Z{top} D0"};
   d.tool_call = {"T=\"T{tool}\"", "M6"};

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <regex>
 #include <set>
@@ -86,6 +87,21 @@ TEST(Controls, WorkOffsetsAreThoseOfTheControl) {
 
 // Every way in which the keys of smoothing, corners and coolants can be wrong, alone or with their partners and the
 // control.
+/// What the work offset must hold beside its place is told for every control that makes joints of words.
+TEST(Controls, SayWhatTheWorkOffsetMustHold) {
+  const std::array<char, 5> letters{'X', 'Y', 'Z', 'C', 'A'};
+  for (const auto* c : controls::all()) {
+    const std::string trust = text::offset_trust(c->words, "G54", letters);
+    EXPECT_EQ(trust.empty(), c->words.name == "apt") << c->words.name;
+    EXPECT_EQ(trust.find('{'), std::string::npos) << trust;
+    EXPECT_EQ(trust.find("A, C") == std::string::npos, trust.empty()) << trust;
+    for (const std::string& line : text::offset_check_lines(c->words, "G54", letters))
+      EXPECT_EQ(line.find('{'), std::string::npos) << line;
+  }
+  EXPECT_EQ(text::offset_trust(controls::find("linuxcnc")->words, "G55", {'X', 'Y', 'Z', 'B', 0}),
+            "B, R of G55 must be 0: the program looks and ends if they are not");
+}
+
 TEST(ControlKeys, AreJudgedWithTheirPlace) {
   for (const test::PostKeys& keys : test::kPostKeys)
     EXPECT_EQ(messages(test::machine_with(keys)), std::string(keys.messages)) << keys.what;

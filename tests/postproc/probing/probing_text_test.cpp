@@ -194,5 +194,21 @@ TEST(ProbingTextLinuxcnc, TheInterpreterProbesThePlannedPlaces) {
   EXPECT_EQ(seen.messages.find("rror"), std::string::npos) << seen.messages;
 }
 
+TEST(ProbingTextLinuxcnc, EndsWhereTheWorkOffsetTurns) {
+  ProbeProgram p = sample();
+  p.offset_check = text::offset_check_lines(controls::find("linuxcnc")->words, "G54", {'X', 'Y', 'Z', 'C', 'A'});
+  ASSERT_EQ(p.offset_check.size(), 3u);
+  const auto text = controls::probing_text(p, "linuxcnc");
+  ASSERT_TRUE(text);
+  const auto probes = [&](const std::string& parameters) {
+    const Canonical seen = interpret(*text, "probing_turned", "", parameters);
+    return std::count_if(seen.lines.begin(), seen.lines.end(),
+                         [](const std::string& line) { return line.find("STRAIGHT_") != std::string::npos; });
+  };
+  EXPECT_GT(probes(""), 15);
+  EXPECT_EQ(probes("5230 5"), 0);
+  EXPECT_EQ(probes("5226 0.25"), 0);
+}
+
 }  // namespace
 }  // namespace toothpath::test

@@ -65,6 +65,17 @@ TEST(WrittenOffset, ZeroOfTheRotaryHoldsInEveryOffset) {
   EXPECT_NEAR(last(executed("G52 C30\nG92.1\nG0 C10\n")).joints[3], 10, 1e-12);
 }
 
+/// The program may read what it has written, the turn too.
+TEST(WrittenOffset, ParametersHoldWhatWasWritten) {
+  const auto x = [](const std::string& ahead) {
+    return last(executed(std::string(kTurned) + ahead + "G0 X[10+#5390/9]\n" + kStraight)).joints[0] - 3;
+  };
+  EXPECT_NEAR(x(""), 20, 1e-12);
+  EXPECT_NEAR(x("G10 L2 P9 R-45\n"), 5, 1e-12);
+  EXPECT_NEAR(x(kStraight), 10, 1e-12);
+  EXPECT_NEAR(last(executed("G0 X[#5221+#5230]\n")).joints[0], 6, 1e-12);
+}
+
 struct Refusal {
   const char *what, *body, *message;
   const char* index_offset = "G59.3";

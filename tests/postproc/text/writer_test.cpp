@@ -283,7 +283,7 @@ TEST(NcReader, G64OfLinuxcncCountsMoreThanItsTolerance) {
   const std::string text = text::write_nc(*p, *controls::dialect_of(m), text::NcHeader{})->text;
   const auto counted = [&](const std::string& word) {
     std::string with = text;
-    with.replace(with.find("\nG61\n"), 5, "\n" + word);
+    with.replace(with.find("\nG61\n"), 5, "\n" + word + "\n");
     double most = 0;
     const auto s = readback::execute_nc(
         with, "p.ngc", *control, [&](const readback::ExecutedMove& e) { most = std::max(most, double(e.blend_mm)); });
