@@ -19,7 +19,7 @@ bool has_offset(std::string_view name) {
 
 Status execute(std::string_view text, const std::string& file, const readback::NcControl& control,
                const readback::MoveSink& sink) {
-  static const readback::IsoLanguage language = fanuc_language();
+  static const iso::IsoLanguage language = fanuc_language();
   return execute_iso(text, file, control, sink, language);
 }
 
@@ -71,8 +71,8 @@ text::NcDialect fanuc_words() {
   return d;
 }
 
-readback::IsoLanguage fanuc_language() {
-  readback::IsoLanguage l;
+iso::IsoLanguage fanuc_language() {
+  iso::IsoLanguage l;
   l.g_tenths = {434, 531, 610, 640, 682, 690};
   l.stops_at_corners = l.moves_zeros = true;
   l.extended = {.tenths = 541, .last = kLastExtended};

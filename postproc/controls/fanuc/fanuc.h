@@ -2,12 +2,12 @@
 #pragma once
 
 #include "postproc/controls/control.h"
-#include "postproc/readback/interpreter.h"
+#include "postproc/readback/iso/interpreter.h"
 
 namespace toothpath::controls {
 
 [[nodiscard]] text::NcDialect fanuc_words();
-[[nodiscard]] readback::IsoLanguage fanuc_language();
+[[nodiscard]] iso::IsoLanguage fanuc_language();
 
 /// G54 to G59 and G54.1 P1 to P300.
 [[nodiscard]] WorkOffsets fanuc_offsets();

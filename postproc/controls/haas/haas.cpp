@@ -28,12 +28,12 @@ text::NcDialect words() {
   return d;
 }
 
-const readback::IsoLanguage& language() {
-  static const readback::IsoLanguage l = [] {
-    readback::IsoLanguage haas;
+const iso::IsoLanguage& language() {
+  static const iso::IsoLanguage l = [] {
+    iso::IsoLanguage haas;
     haas.g_tenths = {610, 640, 690};
     haas.stops_at_corners = haas.moves_zeros = haas.local_calls = true;
-    haas.dwell = readback::DwellNumber::by_point;
+    haas.dwell = iso::DwellNumber::by_point;
     haas.bare_reference = true;
     haas.rules.stop = readback::ProgramStop::ends_spindle;
     haas.coolant_m = {8, 9, 88, 89};

@@ -7,7 +7,7 @@
 #include "cam/tool/cutters.h"
 #include "postproc/controls/control.h"
 #include "postproc/controls/work_offset.h"
-#include "postproc/readback/interpreter.h"
+#include "postproc/readback/iso/interpreter.h"
 
 namespace toothpath::controls {
 namespace {
@@ -95,9 +95,9 @@ double corner_of_g64(double p_mm, double q_mm, double exact_mm) {
   return root * root + 1.2 * exact_mm + q_mm;
 }
 
-const readback::IsoLanguage& language() {
-  static const readback::IsoLanguage l = [] {
-    readback::IsoLanguage linuxcnc;
+const iso::IsoLanguage& language() {
+  static const iso::IsoLanguage l = [] {
+    iso::IsoLanguage linuxcnc;
     linuxcnc.o_words = linuxcnc.codes_of_site = linuxcnc.moves_zeros = true;
     linuxcnc.point_needed = false;
     linuxcnc.g_tenths = {100, 591, 592, 593, 610, 611, 640, 921};
@@ -105,7 +105,7 @@ const readback::IsoLanguage& language() {
     linuxcnc.origin_parameter = origin_parameter;
     linuxcnc.corner_of_g64 = corner_of_g64;
     linuxcnc.most_m = 4;
-    linuxcnc.dwell = readback::DwellNumber::seconds;
+    linuxcnc.dwell = iso::DwellNumber::seconds;
     linuxcnc.bare_reference = true;
     linuxcnc.rules.stop = readback::ProgramStop::waits;
     linuxcnc.rules.reference_keeps_length = true;

@@ -21,7 +21,7 @@ text::NcDialect words() {
 
 Status execute(std::string_view text, const std::string& file, const readback::NcControl& control,
                const readback::MoveSink& sink) {
-  static const readback::IsoLanguage language = fanuc_language();
+  static const iso::IsoLanguage language = fanuc_language();
   return execute_iso(text, file, control, sink, language);
 }
 

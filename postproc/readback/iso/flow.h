@@ -16,11 +16,11 @@
 #include <utility>
 #include <vector>
 
-#include "postproc/readback/block.h"
+#include "postproc/readback/iso/block.h"
 #include "postproc/readback/reader.h"
 #include "postproc/readback/turns.h"
 
-namespace toothpath::readback {
+namespace toothpath::iso {
 
 class NcFlow {
  public:
@@ -28,7 +28,7 @@ class NcFlow {
   using Words = std::function<std::optional<Diagnostic>(const NcBlock&)>;
 
   /// @param o_words LinuxCNC: o-words and text without %; else M98 and a program between % and %
-  NcFlow(std::string_view text, const std::string& file, bool o_words, const NcControl& control);
+  NcFlow(std::string_view text, const std::string& file, bool o_words, const readback::NcControl& control);
 
   /// Executes to the end of the program. `words` sees every block that is no o-word and no assignment, empty ones too.
   [[nodiscard]] Status run(const Words& words);
@@ -115,7 +115,7 @@ class NcFlow {
   std::unordered_map<std::size_t, NcBlock> cache_;
   NcBlock once_;
   std::vector<Frame> frames_;
-  LoopTurns turns_;
+  readback::LoopTurns turns_;
   std::size_t pc_ = 0, line_ = 0;
   bool ended_ = false, started_ = false;
   std::uint64_t print_ = 0;  // of the parameters that are set: two states with other prints differ
@@ -127,4 +127,4 @@ class NcFlow {
   std::set<std::size_t> zeros_;
 };
 
-}  // namespace toothpath::readback
+}  // namespace toothpath::iso

@@ -1,11 +1,11 @@
-#include "postproc/readback/block.h"
+#include "postproc/readback/iso/block.h"
 
 #include <algorithm>
 #include <charconv>
 #include <optional>
 #include <span>
 
-namespace toothpath::readback {
+namespace toothpath::iso {
 namespace {
 
 constexpr std::size_t kLongestBlock = 256;
@@ -325,4 +325,4 @@ std::vector<std::size_t> squares_above_zero(const NcBlock& block, const NcValue&
   return ends ? parameters : std::vector<std::size_t>{};
 }
 
-}  // namespace toothpath::readback
+}  // namespace toothpath::iso

@@ -9,7 +9,7 @@
 
 #include "geometry/base/result.h"
 
-namespace toothpath::readback {
+namespace toothpath::iso {
 
 /// Step of an expression in postfix order.
 struct NcStep {
@@ -122,4 +122,4 @@ template <typename Parameters>
   return stack[0];
 }
 
-}  // namespace toothpath::readback
+}  // namespace toothpath::iso

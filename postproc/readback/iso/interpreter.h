@@ -9,7 +9,7 @@
 #include "postproc/readback/execution.h"
 #include "postproc/readback/reader.h"
 
-namespace toothpath::readback {
+namespace toothpath::iso {
 
 /// Work offsets behind one G code with a number: G54.1 P1 to P300.
 struct ExtendedOffsets {
@@ -49,11 +49,11 @@ struct IsoLanguage {
   /// What the control leaves of a corner under G64 P Q, mm; `exact_mm`: what the machine leaves where it stops. Null:
   /// there is no G64 P.
   double (*corner_of_g64)(double p_mm, double q_mm, double exact_mm) = nullptr;
-  NcRules rules;
+  readback::NcRules rules;
 };
 
 /// Executes what we write for a control of the family; everything else is refused where it stands.
-[[nodiscard]] Status execute_iso(std::string_view text, const std::string& file, const NcControl& control,
-                                 const MoveSink& sink, const IsoLanguage& language);
+[[nodiscard]] Status execute_iso(std::string_view text, const std::string& file, const readback::NcControl& control,
+                                 const readback::MoveSink& sink, const IsoLanguage& language);
 
-}  // namespace toothpath::readback
+}  // namespace toothpath::iso

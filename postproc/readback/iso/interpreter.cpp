@@ -1,4 +1,4 @@
-#include "postproc/readback/interpreter.h"
+#include "postproc/readback/iso/interpreter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,14 @@
 #include <utility>
 
 #include "geometry/base/angle.h"
-#include "postproc/readback/flow.h"
+#include "postproc/readback/iso/flow.h"
 #include "postproc/tool_check/lines.h"
 #include "postproc/tool_check/unsaid.h"
 
-namespace toothpath::readback {
+namespace toothpath::iso {
 namespace {
+
+using readback::MoveSink, readback::NcControl, readback::NcExecution, readback::kStops, readback::group_of_m;
 
 constexpr unsigned kOffsets = 12;  // modal group
 constexpr unsigned kZeros = 32;    // beside the modal groups: G52
@@ -594,4 +596,4 @@ Status execute_iso(std::string_view text, const std::string& file, const NcContr
   return Interpreter(text, file, control, sink, language).run();
 }
 
-}  // namespace toothpath::readback
+}  // namespace toothpath::iso

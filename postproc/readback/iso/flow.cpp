@@ -1,4 +1,4 @@
-#include "postproc/readback/flow.h"
+#include "postproc/readback/iso/flow.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,7 +7,7 @@
 
 #include "postproc/tool_check/lines.h"
 
-namespace toothpath::readback {
+namespace toothpath::iso {
 namespace {
 constexpr std::size_t kDeepestCall = 8;
 constexpr std::size_t kMostParsed = 1 << 19;  // lines of loops and sub-programs that are kept parsed
@@ -71,7 +71,7 @@ constexpr std::string_view kOwnNames[] = {"_vmajor",
                                           "_remap_level"};
 }  // namespace
 
-NcFlow::NcFlow(std::string_view text, const std::string& file, bool o_words, const NcControl& control)
+NcFlow::NcFlow(std::string_view text, const std::string& file, bool o_words, const readback::NcControl& control)
     : file_(file),
       o_words_(o_words),
       check_lines_(control.tool_check ? control.tool_check->lines.size() : 0),
@@ -88,7 +88,7 @@ Status NcFlow::run(const Words& words) {
   while (!ended_) {
     if (pc_ >= lines_.size())
       return at(lines_.size(), 0, o_words_ ? "the program ends without M2 or M30" : "the program ends without M30");
-    if (++steps > max_steps_) return at(pc_ + 1, 0, too_many_blocks(max_steps_));
+    if (++steps > max_steps_) return at(pc_ + 1, 0, readback::too_many_blocks(max_steps_));
     if (++idle_ > max_idle_)
       return at(pc_ + 1, 0, fmt::format("more than {} executed blocks in a row without a move", max_idle_));
     line_ = pc_++;
@@ -453,4 +453,4 @@ std::optional<Diagnostic> NcFlow::loop_head(const NcBlock& b) {
   return std::nullopt;
 }
 
-}  // namespace toothpath::readback
+}  // namespace toothpath::iso
