@@ -37,6 +37,10 @@ class NcFlow {
   [[nodiscard]] Diagnostic here(int column, std::string message) const {
     return at(line_ + 1, column, std::move(message));
   }
+  /// A problem in that line; nothing: there is none.
+  [[nodiscard]] std::optional<Diagnostic> placed(int column, std::optional<std::string> problem) const {
+    return problem ? std::optional(here(column, std::move(*problem))) : std::nullopt;
+  }
   [[nodiscard]] std::string_view text() const { return lines_[line_]; }  ///< of the line that is being executed
   [[nodiscard]] std::int32_t line() const { return static_cast<std::int32_t>(line_) + 1; }
   [[nodiscard]] Result<double> value(const NcBlock& b, const NcValue& v, int column) const;
