@@ -123,10 +123,13 @@ Status Stations::place(const inspection::TouchPlan& plan, ProbeProgram& program)
     touch.number = t.number;
     touch.remark = t.remark;
     touch.start = in_work_offset(t.number, t.start());
+    touch.meets = in_work_offset(t.number, t.centre);
     touch.past = in_work_offset(t.number, t.centre - kBeyondTouch * t.normal);
     for (std::size_t k = 0; k < machine_.chain.rotary_count(); ++k)
       touch.rotaries.emplace_back(machine_.chain.rotary(k).letter, degrees(rotary_rad_[std::size_t(t.number - 1)][k]));
-    for (const Vec3& at : {touch.start, touch.past, Vec3(touch.start.x(), touch.start.y(), program.clear_mm)})
+    // A cycle looks as far behind the place as the way to it is long.
+    const Vec3 behind = 2 * touch.meets - touch.start;
+    for (const Vec3& at : {touch.start, touch.past, behind, Vec3(touch.start.x(), touch.start.y(), program.clear_mm)})
       if (const auto inside = holds(at, touch, program.probe_length_mm); !inside) return inside.error();
     program.touches.push_back(std::move(touch));
   }

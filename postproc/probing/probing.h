@@ -14,9 +14,10 @@ namespace toothpath::probing {
 /// One touch; places of the ball's centre in the work offset, mm, while the rotaries stand.
 struct ProbeTouch {
   int number = 0;
-  std::string remark;         ///< ASCII, upper case
-  Vec3 start = Vec3::Zero();  ///< straight below the clear height; the ball goes from here
-  Vec3 past = Vec3::Zero();   ///< to the touch, or to here where nothing is met: then the program stops
+  std::string remark;                             ///< ASCII, upper case
+  Vec3 start = Vec3::Zero();                      ///< straight below the clear height; the ball goes from here
+  Vec3 meets = Vec3::Zero();                      ///< where it should touch, on the way to
+  Vec3 past = Vec3::Zero();                       ///< here, where it has met nothing: then the program stops
   std::vector<std::pair<char, double>> rotaries;  ///< letter and degrees; they turn with the probe at its top
 };
 
@@ -39,9 +40,10 @@ struct ProbeProgram {
 /// nothing ends it, and every touch logs "number x y z".
 /// Errors: more touches than the control has room for their results.
 using ProbingWords = Result<std::string> (*)(const ProbeProgram& program);
-[[nodiscard]] Result<std::string> g38_probing(const ProbeProgram& program);          ///< G38.3, G38.2, LOG
-[[nodiscard]] Result<std::string> g31_probing(const ProbeProgram& program);          ///< G31, DPRNT
-[[nodiscard]] Result<std::string> meas_probing(const ProbeProgram& program);         ///< MEAS
+[[nodiscard]] Result<std::string> g38_probing(const ProbeProgram& program);  ///< G38.3, G38.2, LOG
+[[nodiscard]] Result<std::string> g31_probing(const ProbeProgram& program);  ///< G31, DPRNT
+/// MEAS; CYCLE978 where the way lies along Z or across it: its way ends as far behind `meets` as it begins ahead of it.
+[[nodiscard]] Result<std::string> meas_probing(const ProbeProgram& program);
 [[nodiscard]] Result<std::string> touch_probe_probing(const ProbeProgram& program);  ///< TCH PROBE
 
 }  // namespace toothpath::probing

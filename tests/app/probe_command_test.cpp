@@ -10,6 +10,7 @@
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/inverse.h"
 #include "tests/app/program.h"
+#include "tests/support/siemens_probe.h"
 #include "tests/support/touching_ball.h"
 #include "tests/support/trunnion_kinematics.h"
 
@@ -181,6 +182,81 @@ TEST(ProbeCommand, ABevelGearIsFoundInTheTiltOfItsMill) {
   const auto blank = probe({"--blank"});
   ASSERT_EQ(blank.exit_code, 0) << blank.err;
   EXPECT_NE(file_text(dir / "probe/probe_setup.ngc").find("(TOUCH 8 FACE CONE OF THE BLANK)"), std::string::npos);
+}
+
+/// Signed distance from a cylinder about the vertical through `axis`, its top at `top`.
+double from_cylinder(const Vec3& x, const Vec3& axis, double radius, double top) {
+  const double beside = (x - axis).head<2>().norm() - radius, above = x.z() - top;
+  return beside > 0 && above > 0 ? std::hypot(beside, above) : std::max(beside, above);
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+TEST(ProbeCommand, ABlankIsFoundByTheMeasuringCycleOfSiemens) {
+  for (const char* spaces : {"4", "5", "3"}) {
+    const TestDir dir;
+    write_file(dir / "job.toml", replaced(file_text(kSamples + "/spur_quick.toml"), "\"xyzac_large.toml\" ",
+                                          "\"siemens_ac\"\naccept_assumed = true #"));
+    const auto probe = [&](std::vector<std::string> more) {
+      std::vector<std::string> words = {
+          "probe",    dir / "job.toml", "--ball-diameter", "3",     "--probe-length", "90", "--tool", "9",
+          "--spaces", spaces,           "--blank",         "--out", dir / "probe"};
+      words.insert(words.end(), more.begin(), more.end());
+      return run_program({words});
+    };
+    const auto written = probe({});
+    ASSERT_EQ(written.exit_code, 0) << written.err;
+    const std::string text = file_text(dir / "probe/probe_setup.mpf");
+    const auto n = std::size_t(std::stoi(spaces));
+    EXPECT_EQ(count_of(text, "CYCLE978(0,"), 2 * n) << text;
+    EXPECT_EQ(text.find("NOTHING_MET"), std::string::npos) << text;
+    EXPECT_EQ(text.find("ROT Z=") == std::string::npos, n == 4) << text;
+
+    auto job = job::read_job_file(dir / "job.toml");
+    ASSERT_TRUE(job.has_value());
+    const auto gear = process::make_face_gear(job.value()).value();
+    const joints::Setup setup = *job.value().setup;
+    const Vec3 moved(0.31, -0.24, 0.17), stands = setup.origin_mm + moved - setup.work_offset_at_mm;
+    const SiemensProbe machine{
+        [&](int, const Vec3& centre) {
+          return from_cylinder(centre, stands, gear.outer_radius(), stands.z() + gear.blank_top()) - 1.5;
+        },
+        1.5, 0.008};
+    const SiemensProbing ran = run_siemens_probing(text, machine);
+    ASSERT_EQ(ran.alarm, "") << text;
+    EXPECT_EQ(ran.touches.size(), 2 * n);
+    write_file(dir / "results.txt", ran.log);
+    const auto solved = probe({"--results", dir / "results.txt", "--json"});
+    ASSERT_EQ(solved.exit_code, 0) << solved.err << ran.log;
+    const auto found = nlohmann::json::parse(solved.out)["report"];
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_NEAR(found["moved"][k].get<double>(), moved[Eigen::Index(k)], 2e-5) << solved.out;
+  }
+}
+
+TEST(ProbeCommand, SiemensTouchesTheFaceConeOfABevelBlankAlongZAndFlanksAslant) {
+  const TestDir dir;
+  write_file(dir / "job.toml", replaced(replaced(file_text(kSamples + "/bevel_wheel.toml"), "\"xyzac_large.toml\"",
+                                                 "\"siemens_ac\"\naccept_assumed = true"),
+                                        "260.0]      # the apex", "260.0]"));
+  const auto probe = [&](std::vector<std::string> more) {
+    std::vector<std::string> words = {
+        "probe", dir / "job.toml", "--ball-diameter", "1.5", "--probe-length", "60", "--tool",
+        "9",     "--out",          dir / "probe"};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto written = run_program({words});
+    EXPECT_EQ(written.exit_code, 0) << written.err;
+    return file_text(dir / "probe/probe_setup.mpf");
+  };
+  const std::string blank = probe({"--blank"}), flanks = probe({});
+  EXPECT_EQ(count_of(blank, "CYCLE978(0,,,1,"), 8u) << blank;
+  EXPECT_EQ(count_of(blank, ",3,2,1,\"\",,0,1.0100,1.0100,-1.0100,,,,,1,1)"), 8u) << blank;
+  EXPECT_EQ(count_of(flanks, "CYCLE978"), 0u) << flanks;
+  EXPECT_EQ(count_of(flanks, "GOTOF NOTHING_MET"), 16u) << flanks;
 }
 
 TEST(ProbeCommand, WhatIsWrongIsRefusedAtItsPlace) {
