@@ -47,6 +47,9 @@ struct PostSettings {
   std::optional<bool> index_loop;      ///< tooth indexing as a loop or sub-program (true) or written out (false)
   /// A work offset that programs may overwrite: with TCP they turn it to every tooth (LinuxCNC). Empty: they may none.
   std::string index_offset;
+  /// The control is set so that its transformation takes the rotary offset of the frame in force when it is switched on
+  /// (Siemens, 24590 TRAFO5_ROT_OFFSET_FROM_FRAME): the part's frame turns with a moved zero.
+  bool transformation_takes_rotary_offset = false;
   std::vector<std::string> tcp_on;   ///< blocks that switch TCP on, e.g. {"M428"}
   std::vector<std::string> tcp_off;  ///< and off
   /// Blocks that switch the control's own smoothing on ahead of the teeth of an operation and off behind them; empty:

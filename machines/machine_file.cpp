@@ -331,6 +331,8 @@ void read_post(toml::TableReader post, PostSettings& settings) {
   settings.rotary_decimals = post.optional_integer("rotary_decimals", {0, 9});
   settings.index_loop = post.optional_boolean("index_loop");
   settings.index_offset = post.optional_text("index_offset", {.ascii = true}).value_or("");
+  settings.transformation_takes_rotary_offset =
+      post.optional_boolean("transformation_takes_rotary_offset").value_or(false);
   settings.tcp_on = post.optional_ascii_list("tcp_on").value_or(std::vector<std::string>{});
   settings.tcp_off = post.optional_ascii_list("tcp_off").value_or(std::vector<std::string>{});
   settings.corner_tolerance_mm = post.optional_number("corner_tolerance", toml::Range::positive(0.1, " mm"));

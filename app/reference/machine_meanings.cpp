@@ -108,6 +108,12 @@ constexpr Meaning kMachineMeanings[] = {
      "LinuxCNC: a work offset that programs may overwrite, `\"G59.3\"`: with TCP one tooth stands in the text, and the "
      "offset turns it to the others ([dialects](dialects.md#the-zero-of-the-index-rotary)); left out: all teeth are "
      "written out."},
+    {"post.transformation_takes_rotary_offset",
+     "Siemens with `tcp = \"angles\"`: `true` where the machine data 24590 TRAFO5_ROT_OFFSET_FROM_FRAME of the "
+     "transformation is 1, so that TRAORI takes the rotary offset of the frame: a loop moves the zero of the index "
+     "rotary, and no word holds a sum ([dialects](dialects.md#the-zero-of-the-index-rotary)); the dry run shows "
+     "whether "
+     "it is so."},
     {"post.tcp_on", "Blocks that switch TCP on, `[\"M428\"]`; needed for TCP under LinuxCNC."},
     {"post.tcp_off", "Blocks that switch TCP off."},
     {"post.corner_tolerance",

@@ -40,6 +40,7 @@ class Judge {
     corners();
     tcp();
     index_offset();
+    rotary_offset();
     rollover();
     coolants();
     clamps();
@@ -101,6 +102,17 @@ class Judge {
       refuse("post.index_offset", "post.index_offset: dialect \"{}\" turns no work offset, leave it out", words_.name);
     else if (const Control* control = find(words_.name); control != nullptr && !control->offsets.has(name))
       refuse("post.index_offset", "post.index_offset = \"{}\" is none of {}", name, control->offsets.names);
+  }
+
+  void rotary_offset() {
+    constexpr const char* kKey = "post.transformation_takes_rotary_offset";
+    if (!machine_.post.transformation_takes_rotary_offset) return;
+    if (words_.loop.zero_note.empty())
+      refuse(kKey, "{}: dialect \"{}\" has no such machine data, leave it out", kKey, words_.name);
+    else if (machine_.tcp != machines::TcpMode::angles)
+      refuse(kKey, "{}: tcp = \"{}\" has no words that it changes, \"angles\" has; leave it out", kKey,
+             machine_.tcp == machines::TcpMode::none ? "none" : "vectors");
+    else if (machine_.chain.table.empty()) refuse(kKey, "{}: no rotary turns the work, leave it out", kKey);
   }
 
   void rollover() {
@@ -318,6 +330,12 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
     d.tcp_off = post.tcp_off;
     if (!d.tcp_starts_at_zero) d.safe_start.insert(d.safe_start.end(), d.tcp_off.begin(), d.tcp_off.end());
   }
+  if (post.transformation_takes_rotary_offset) {
+    d.loop.zero_with_tcp = d.loop.zero_turns_frame = true;
+    d.loop.frame_on = d.loop.frame_off = {};
+    d.tcp_on.emplace_back("{zero_on}");  // behind the work offset: frames may be dropped
+    d.tcp_off.emplace_back("{zero_on}");
+  }
   if (!post.smoothing_on.empty()) {
     if (post.smoothing_off.empty() || !post.smoothing_tolerance_mm)  // a file without them is refused by its reader
       return fail_at(machine.where("post.smoothing_on"),
@@ -354,7 +372,8 @@ joints::AxisOptions axis_options(const text::NcDialect& words, const machines::M
   options.expand_teeth = !machine.post.index_loop.value_or(true) || words.loop.form == text::NcLoop::Form::none;
   options.tcp_starts_at_zero = words.tcp_starts_at_zero;
   options.corners = corners_of(words, machine.post);
-  options.tcp_loop = !words.loop.frame_on.empty() || (words.tcp_starts_at_zero && words.loop.zero_with_tcp);
+  options.tcp_frame_is_table = words.loop.zero_turns_frame || (words.tcp_starts_at_zero && words.loop.zero_with_tcp);
+  options.tcp_loop = !words.loop.frame_on.empty() || options.tcp_frame_is_table;
   if (!words.loop.offset_on.empty())
     options.no_tcp_loop =
         "with TCP this control turns a work offset, and post.index_offset names none that programs may overwrite";
@@ -378,6 +397,7 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
   c.exact_path_mm = machine.exact_corner_mm();
   c.corner_mm = machine.post.corner_tolerance_mm;
   c.index_offset = machine.post.index_offset;
+  c.transformation_takes_rotary_offset = machine.post.transformation_takes_rotary_offset;
   c.tcp_on = machine.post.tcp_on;
   c.tcp_off = machine.post.tcp_off;
   c.smoothing_on = machine.post.smoothing_on;

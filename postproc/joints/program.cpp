@@ -211,10 +211,10 @@ class ProgramBuilder {
     program_.frame_sign = gear_axis.z() > 0 ? 1 : -1;
   }
 
-  /// The control turns a frame about the Z axis through its work offset: that must be the gear axis. A frame that is
-  /// frozen turns with the table.
+  /// The control turns a frame about the Z axis through its work offset: that must be the gear axis. One that is
+  /// the table's turns with it.
   bool frame_can_turn() const {
-    if (!options_.tcp_loop || options_.tcp_starts_at_zero) return options_.tcp_loop;
+    if (!options_.tcp_loop || options_.tcp_frame_is_table) return options_.tcp_loop;
     const Vec3 gear_axis = gear_.rotation.col(2);
     return std::abs(std::abs(gear_axis.z()) - 1) <= kParallel &&
            (gear_.origin - setup_.work_offset_at_mm).head<2>().norm() <= kCoincident;

@@ -55,9 +55,9 @@ struct AxisOptions {
   bool tcp_starts_at_zero =
       false;  ///< TCP freezes the table frame where it is switched on: only with the rotaries at zero
   timing::Corners corners = timing::Corners::jump;  ///< how the control joins feed blocks
-  /// While TCP is on the dialect can turn the frame of a loop about the gear axis; with `tcp_starts_at_zero` the frame
-  /// is the table's at the angle of the tooth.
+  /// While TCP is on the dialect can turn the frame of a loop about the gear axis.
   bool tcp_loop = false;
+  bool tcp_frame_is_table = false;  ///< .. and that frame is the table's at the angle of the tooth
   /// Why not, where it cannot.
   const char* no_tcp_loop = "with TCP this control has no frame that a program could turn about the gear axis";
   /// Cuts stand in tilted planes of the control, without TCP; the place that asks for it. A tool that stands along the
@@ -126,8 +126,11 @@ class PackedBlocks {
 struct ToothBlocks {
   int tooth = 0;  ///< space index; in a loop 0
   std::vector<AxisBlock> blocks;
-  std::string remark = {};   ///< stands in the text instead of "TOOTH k"; empty: that
-  bool pause = false;        ///< the program stops behind the blocks until it is started again
+  std::string remark = {};  ///< stands in the text instead of "TOOTH k"; empty: that
+  bool pause = false;       ///< the program stops behind the blocks until it is started again
+  /// Of a program without a loop: the words of its `index_axis` count from here, deg, until those of another tooth do
+  /// not. TCP is off where it changes.
+  std::optional<double> zero_deg = {};
   PackedBlocks packed = {};  ///< instead of `blocks`, where the options ask for it
 
   void pack();

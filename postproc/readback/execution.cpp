@@ -424,6 +424,16 @@ NcExecution::Problem NcExecution::tcp_on() {
     if (!control_.chain->in_table(0)) return "TCP starts where the zero of a rotary of the head is moved";
     frozen_deg_ = joints_[3];
   }
+  if (rules_.tcp_may_take_zero && zero_is_moved()) {
+    if (!control_.transformation_takes_rotary_offset)
+      return fmt::format(
+          "TCP starts while {} counts from {} deg: whether the frame turns with it is machine data, and "
+          "post.transformation_takes_rotary_offset of the machine file does not grant it",
+          control_.letters[zero_[3] != 0 ? 3 : 4], zero_[zero_[3] != 0 ? 3 : 4]);
+    if (zero_[4] != 0) return "TCP starts where the zero of a second rotary is moved";
+    if (!control_.chain->in_table(0)) return "TCP starts where the zero of a rotary of the head is moved";
+    frozen_deg_ = zero_[3];
+  }
   tip_ = tip_of(joints_);
   tcp_ = true;
   return std::nullopt;
@@ -526,6 +536,7 @@ NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>&
   }
   tip = words == before ? tip_ : from_words(words);
   if (m.vector) {
+    if (frozen_deg_) return "a tool vector in a frame that has turned with the zero of a rotary is not in the subset";
     const double size = m.vector->norm();
     if (!(std::abs(size - 1) < 1e-5)) return fmt::format("a tool vector of length {:.6f}", size);
     const Vec3 axis = turned_deg(*m.vector / size, frame_deg_);

@@ -34,6 +34,9 @@ struct NcRules {
   /// TCP may be switched on with the rotaries at zero only; one whose zero the program has moved, and which carries the
   /// work, stands there at that zero, and the table frame is the one that then lies along the machine axes.
   bool tcp_needs_zero = false;
+  /// Whether TCP takes the moved zero of the rotary that carries the work as the table's own, so that the frame turns
+  /// with it, is for NcControl::transformation_takes_rotary_offset to say.
+  bool tcp_may_take_zero = false;
   double least_rate = 0;          ///< G93 blocks are raised to this rate, mm/min or deg/min
   bool per_minute_turns = false;  ///< G94 with rotary words without TCP has a defined time
   /// Work offsets have a turn about Z of their own, and another one may be taken while TCP is on: it changes what words
@@ -175,6 +178,9 @@ class NcExecution {
   Problem move_zero(std::size_t axis, double degrees, std::string_view word);
   /// The zeros of all rotaries are those of the machine.
   Problem clear_zeros();
+  /// Both: a line that moves one and clears the others. Said again it changes nothing, with TCP on, too.
+  Problem replace_zeros(std::size_t axis, double degrees, std::string_view word);
+  [[nodiscard]] bool zero_is_moved() const { return zero_[3] != 0 || zero_[4] != 0; }
 
   // A tilted plane, without TCP (postproc/readback/frames.cpp): words are coordinates in it, their Z along the tool.
   /// Which of the two pairs of rotary angles stands the tool upright on a plane: by the angle of the second rotary of
@@ -232,7 +238,7 @@ class NcExecution {
   bool tcp_ = false;
   std::array<double, 5> zero_{};      // of the words of the rotaries, deg
   bool zeros_cleared_ = false;        // by the program
-  std::optional<double> frozen_deg_;  // first rotary where TCP froze the table frame
+  std::optional<double> frozen_deg_;  // first rotary where TCP froze the table frame, or whose zero it has taken
   // Rotaries that roll over by the sign of their words: as the control adds them up, from the zero of their words.
   std::array<double, 5> rolled_{};
   double frame_deg_ = 0;

@@ -62,6 +62,12 @@ NcExecution::Problem NcExecution::move_zero(std::size_t axis, double degrees, st
   return std::nullopt;
 }
 
+NcExecution::Problem NcExecution::replace_zeros(std::size_t axis, double degrees, std::string_view word) {
+  if (zero_[axis] == degrees && zero_[7 - axis] == 0) return std::nullopt;
+  if (auto bad = clear_zeros()) return bad;
+  return move_zero(axis, degrees, word);
+}
+
 /// Nothing turns: the axis stands elsewhere in its words.
 void NcExecution::set_zero(std::size_t axis, double degrees) {
   rolled_[axis] -= degrees - zero_[axis];

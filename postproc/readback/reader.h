@@ -63,7 +63,9 @@ struct NcControl {
   /// Lines that check a tool, and the tolerance of its length by T; nothing: the machine has no such check.
   std::optional<machines::ToolCheck> tool_check;
   std::map<int, double> check_tolerance_mm;
-  double top_mm = 0;                         ///< highest Z, machine coordinates of the gauge line
+  double top_mm = 0;  ///< highest Z, machine coordinates of the gauge line
+  /// TCP takes the zeros of rotaries as its own where its rules ask (PostSettings).
+  bool transformation_takes_rotary_offset = false;
   std::string index_offset;                  ///< work offset that programs may write (LinuxCNC); empty: none
   std::vector<std::string> tcp_on, tcp_off;  ///< codes of the site that switch TCP (LinuxCNC)
   /// Lines of the machine file that switch the control's own smoothing on and off, and what the shop states for it.

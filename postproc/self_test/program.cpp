@@ -32,6 +32,7 @@ class SelfTestBuilder {
     const double unit = static_cast<double>(numbers::power_of_ten(dialect.format.linear_decimals));
     p.retract_z_mm = std::floor((machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm) * unit + 1e-6) / unit;
     p.work_offset_at_mm = test.point_mm;
+    if (machine.post.transformation_takes_rotary_offset) p.index_axis = 3;
     p.assumed = machine.assumed_keys;
   }
 
@@ -48,13 +49,16 @@ class SelfTestBuilder {
     op.spindle_rpm = 100;  // stands where a control wants it with the tool; nothing starts the spindle
     std::size_t next = 1;
     for (std::size_t s = 0; s < test_.stations.size(); ++s) {
+      if (test_.stations[s].zero_deg != 0) op.teeth.push_back(tcp_off_at(s));
+      zero_deg_ = test_.stations[s].zero_deg;
       joints::ToothBlocks part;
       part.tooth = static_cast<int>(s);
       part.remark = fmt::format("STATION {} OF {}: {}", s + 1, test_.stations.size(), test_.stations[s].remark);
       part.pause = true;
+      if (zero_deg_ != 0) ask_for_zero(part, test_.stations[s].rotary_rad), ++next;
       if (s == 0) approach(part);
       if (s > 0 && test_.lifts) come_down(part, test_.stations[s - 1].rotary_rad, test_.stations[s].rotary_rad);
-      for (; next < test_.moves.size() && s > 0 && !test_.lifts; ++next) {
+      for (; next < test_.moves.size() && s > 0 && !test_.lifts && zero_deg_ == 0; ++next) {
         turn(part, test_.moves[next].joints);
         if (test_.moves[next].station >= 0) {
           ++next;
@@ -68,6 +72,7 @@ class SelfTestBuilder {
     last.tooth = static_cast<int>(test_.stations.size());
     last.remark = "AWAY FROM THE POINT";
     leave(last);
+    if (zero_deg_ != 0) last.zero_deg = zero_deg_;
     op.teeth.push_back(std::move(last));
     program_.operations.push_back(std::move(op));
     return std::move(program_);
@@ -80,10 +85,32 @@ class SelfTestBuilder {
     joints::AxisBlock b;
     b.kind = kind;
     const Vec3 place = test_.point_mm + Vec3(0, 0, height);
-    if (tip) words_.set_tip(b, place, rotaries);
+    if (tip && zero_deg_ != 0) words_.set_tip(b, as_counted(place), {rotaries[0] - radians(zero_deg_), rotaries[1]});
+    else if (tip) words_.set_tip(b, place, rotaries);
     else words_.set_joints(b, machine_.chain.linear_for(place, rotaries, test_.tool_length_mm).linear_mm, rotaries);
     b.axis = machine_.chain.forward({Vec3::Zero(), rotaries}, test_.tool_length_mm).axis;
     return b;
+  }
+  /// A place of the table where the words see it whose rotary counts from elsewhere: the table that is turned by that
+  /// stands for the one at zero.
+  [[nodiscard]] Vec3 as_counted(const Vec3& place) const {
+    const machines::RotaryAxis& axis = machine_.chain.table.front();
+    const Mat3 turn = Eigen::AngleAxisd(-axis.sign * radians(zero_deg_), axis.direction).toRotationMatrix();
+    return axis.point_mm + turn * (place - axis.point_mm);
+  }
+  [[nodiscard]] joints::ToothBlocks tcp_off_at(std::size_t station) const {
+    joints::ToothBlocks part;
+    part.tooth = static_cast<int>(station);
+    part.remark = "TCP OFF: NOTHING MOVES";
+    part.blocks.push_back(at(joints::BlockKind::tcp_off, 0, test_.stations[station].rotary_rad, false));
+    return part;
+  }
+  /// TCP again, and the words of the place at which the axes stand.
+  void ask_for_zero(joints::ToothBlocks& part, const std::array<double, 2>& rotaries) const {
+    part.zero_deg = zero_deg_;
+    part.blocks.push_back(at(joints::BlockKind::tcp_on, 0, rotaries, true));
+    straight(part, 0, test_.approach_mm, rotaries);
+    part.blocks.back().forced = true;
   }
   void straight(joints::ToothBlocks& part, double height, double length, const std::array<double, 2>& rotaries) const {
     joints::AxisBlock b = at(joints::BlockKind::feed, height, rotaries, tcp());
@@ -150,6 +177,7 @@ class SelfTestBuilder {
   const machines::Machine& machine_;
   joints::AxisWords words_;
   joints::AxisProgram program_;
+  double zero_deg_ = 0;  ///< the words of the first rotary count from here
   std::array<double, 2> at_ = test_.stations.front().rotary_rad;
 };
 

@@ -88,6 +88,15 @@ std::vector<SelfTestStation> stations_for(const machines::Machine& machine, doub
   return stations;
 }
 
+/// By how much the zero of the first rotary of the table is moved to ask whether the transformation takes that: a
+/// control that does not lets the tip go about the axis by so much.
+double asking_zero_deg(const machines::KinematicChain& chain, const Vec3& point) {
+  constexpr double kShown = 1, kMostTurn = radians(30), kStep = 1e-3;  // mm, rad, deg
+  const machines::RotaryAxis& axis = chain.table.front();
+  const double radius = (point - axis.point_mm).cross(axis.direction).norm();
+  return std::round(degrees(std::min(kMostTurn, kShown / radius)) / kStep) * kStep;
+}
+
 /// Where the tip may stand: near the table's rotary axis, else in the middle of the travels; nearer to the axis as a
 /// second choice.
 std::vector<Vec3> points_for(const machines::Machine& machine, double tool_length) {
@@ -157,6 +166,13 @@ SelfTest moved_through(const machines::Machine& machine, const Vec3& point, doub
   test.lifts = lifts_between_stations(machine);
   test.stations = stations_for(machine, tilt);
   test.tilt_rad = tilt;
+  if (machine.post.transformation_takes_rotary_offset) {
+    SelfTestStation station = test.stations.back();
+    station.zero_deg = asking_zero_deg(machine.chain, point);
+    station.remark +=
+        fmt::format(", {} COUNTS FROM {:g}: NOTHING MOVES", machine.chain.rotary(0).letter, station.zero_deg);
+    test.stations.push_back(std::move(station));
+  }
   const double reach = swing(machine.chain, point, tool_length);
   // Joint-linear block that turns by w in all: the tip leaves its place by at most w^2 reach / 8, plus that of the
   // linear axes, which follow a curve of the same length and are replaced by its chord: the same again.
@@ -183,6 +199,7 @@ SelfTest moved_through(const machines::Machine& machine, const Vec3& point, doub
 
 machines::Machine without_tcp(machines::Machine machine) {
   machine.tcp = machines::TcpMode::none;
+  machine.post.transformation_takes_rotary_offset = false;  // of the transformation that is off
   return machine;
 }
 

@@ -26,13 +26,18 @@ namespace toothpath::self_test {
 struct SelfTestStation {
   std::array<double, 2> rotary_rad{};  ///< commands, in the order of KinematicChain::rotary
   std::string remark;                  ///< "A+30 C0: TABLE Y+ SIDE DOWN", ASCII upper case
+  /// The axes stand as before, and TCP was switched off and on again with the words of the first rotary of the table
+  /// counting from here, deg; 0: no such station.
+  double zero_deg = 0;
 };
 
 struct SelfTest {
   Vec3 point_mm = Vec3::Zero();  ///< of the tip: table frame, which is machine coordinates with all rotaries at zero
   double tool_length_mm = 0;     ///< gauge point to the tip of the bar
   double approach_mm = 0;        ///< the tip comes down to the point from this height above it
-  std::vector<SelfTestStation> stations;  ///< the first and the last stand at zero
+  /// The first and the last stand at zero. Where the machine file grants that the transformation takes the rotary
+  /// offset of the frame, the last one asks for it: by what the tip moves there if it does not, 1 mm is aimed at.
+  std::vector<SelfTestStation> stations;
   /// Joints of every block. `station` >= 0: the block ends at that station.
   struct Move {
     machines::Joints joints;

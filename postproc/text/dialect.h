@@ -49,7 +49,12 @@ struct NcLoop {
   /// The words of the index rotary count from the angle of the tooth, ahead of it, and from the machine's zero, behind
   /// the operation: they are then those of tooth 0. Empty: `index` stands in every word.
   NcLinesOfText zero_on, zero_off;
-  bool zero_with_tcp = false;         ///< while TCP is on, too; else `index` stands in the words then
+  bool zero_with_tcp = false;  ///< while TCP is on, too; else `index` stands in the words then
+  /// The control can be set so that TCP takes the moved zero as the table's own, and the frame turns with it; the
+  /// machine file says whether it is: `zero_turns_frame`, and no other frame then. A comment of programs that do it;
+  /// empty: it cannot.
+  std::string zero_note;
+  bool zero_turns_frame = false;
   NcLinesOfText frame_on, frame_off;  ///< around TCP: turns the frame by the index; empty: no loop with TCP
   /// The frame is a work offset of the control, {index_offset}, which has the number {index_datum}, which the machine
   /// file leaves to programs: beside `zero_on` and `zero_off`, with TCP. {origins}: the axes at the origins of the work

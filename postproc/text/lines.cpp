@@ -18,6 +18,15 @@ constexpr std::size_t kLongestName = 24;
 constexpr std::size_t kLongestHeader = 20;  // lines
 constexpr double kFreeFeed = 1000;          // F that goes with G94 where nothing is cut, mm/min
 
+/// With TCP the zero of a rotary moves, and the frame with it.
+bool zero_turns_frame(const joints::AxisProgram& program, const NcDialect& dialect) {
+  const auto asks = [](const joints::AxisOperation& op) {
+    return std::any_of(op.teeth.begin(), op.teeth.end(), [](const auto& tooth) { return tooth.zero_deg.has_value(); });
+  };
+  return dialect.loop.zero_turns_frame && program.tcp != machines::TcpMode::none &&
+         (program.loop || std::any_of(program.operations.begin(), program.operations.end(), asks));
+}
+
 }  // namespace
 
 NcLines::Values program_values(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
@@ -108,6 +117,7 @@ std::vector<std::string> header_comments(const joints::AxisProgram& program, con
         fmt::format("{} IS OVERWRITTEN AND TURNED TO THE TEETH; LINEAR_UNITS MUST BE MM", dialect.loop.index_offset));
   if (program.tcp != machines::TcpMode::none && !dialect.tcp_note.empty())
     out.push_back(numbers::comment_text(dialect.tcp_note));
+  if (zero_turns_frame(program, dialect)) out.push_back(numbers::comment_text(dialect.loop.zero_note));
   for (std::size_t a = 3; a < 5; ++a)
     if (program.rollover[a]) {
       const auto note = expanded(dialect.rollover.note, {{"axis", std::string(1, program.letters[a])}});

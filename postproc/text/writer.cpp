@@ -83,6 +83,20 @@ class Writer {
     if (zero_moves_ && wanted) out_.fill(zero, values_);
     if (zero_moves_ && wanted && tcp_) out_.fill(offset, values_);
   }
+  /// Without a loop: the zero of the index rotary by the lines of the loop.
+  void count_from(const std::optional<double>& deg) {
+    if (deg == counts_from_) return;
+    counts_from_ = deg;
+    if (deg) {
+      const int decimals = program_.format.rotary_decimals;
+      out_.line(fmt::format("{}={}", dialect_.loop.index, out_.value(numbers::to_fixed(*deg, decimals), decimals)));
+      out_.fill(dialect_.loop.zero_on, values_);
+    } else {
+      out_.fill(dialect_.loop.zero_off, values_);
+    }
+    zero_moves_ = deg.has_value();
+    forget();
+  }
   void safe_start() {
     out_.fill(dialect_.safe_start, values_);
     if (!program_.planes) return;
@@ -227,6 +241,7 @@ class Writer {
         out_.comment(tooth.remark.empty() ? fmt::format("TOOTH {}", tooth.tooth) : numbers::comment_text(tooth.remark));
         forget();
         clamps_.enter(list, false);
+        count_from(tooth.zero_deg);
         blocks(list, IndexWord::literal);
         if (tooth.pause) {
           fill(dialect_.pause);
@@ -234,6 +249,7 @@ class Writer {
         }
         behind_tooth();
       }
+      count_from({});
     } else if (loop.form == NcLoop::Form::called) {
       calls(op, position);
     } else if (loop.form == NcLoop::Form::sub_program) {
@@ -528,7 +544,8 @@ class Writer {
   NcClamps clamps_;
   NcLines::Values values_;
   bool tcp_;
-  bool zero_moves_;  // the index moves the zero of its rotary
+  bool zero_moves_;                    // the index moves the zero of its rotary
+  std::optional<double> counts_from_;  // without a loop: where its words count from, deg
   std::optional<machines::CoolantWords> coolant_;
   std::optional<Diagnostic> error_;
   const joints::AxisOperation* now_ = nullptr;

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Size of the text and times of one job in every form of output: forms.py PROGRAM JOB [narrow] [CONTROL ..].
+"""Size of the text and times of one job in every form of output: forms.py PROGRAM JOB [narrow] [granted] [CONTROL ..].
 
 The machine is xyzac_large.toml with each control, with accelerations, its teeth called or looped where the control can,
-and written out. `narrow`: with the contour tolerance that nobody asks for. Prints a row a form, as in docs/dialects.md."""
+and written out. `narrow`: with the contour tolerance that nobody asks for. `granted`: Siemens with angles alone, whose
+TRAORI takes the rotary offset. Prints a row a form, as in docs/dialects.md."""
 import json
 import pathlib
 import re
@@ -26,6 +27,8 @@ def machine_text(control, tcp, loop):
         text += "corner_tolerance = 0.0005\n"
     if control == "linuxcnc" and tcp != "none":
         text += 'tcp_on = ["M428"]\ntcp_off = ["M429"]\n' + ('index_offset = "G59.3"\n' if loop else "")
+    if "granted" in sys.argv[3:]:
+        text += "transformation_takes_rotary_offset = true\n"
     if control == "heidenhain":
         text += 'coolant_mist = ["M7", "M9"]\n'
     return text
@@ -50,8 +53,9 @@ def run(program, job, control, tcp, loop, narrow):
 def main():
     program, job, narrow = sys.argv[1], pathlib.Path(sys.argv[2]), "narrow" in sys.argv[3:]
     print("| form | kB | blocks | written out kB | blocks | minutes | proven um |\n|---|---|---|---|---|---|---|")
-    wanted = [word for word in sys.argv[3:] if word != "narrow"]
-    for control, tcp in FORMS:
+    wanted = [word for word in sys.argv[3:] if word not in ("narrow", "granted")]
+    forms = [("siemens", "angles")] if "granted" in sys.argv[3:] else FORMS
+    for control, tcp in forms:
         if wanted and control not in wanted:
             continue
         cells = []

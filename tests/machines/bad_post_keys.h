@@ -38,6 +38,15 @@ inline constexpr PostKeys kPostKeys[] = {
      "m.toml:18:16: error: post.index_offset = \"G59.4\" is none of G54 to G59 and G59.1 to G59.3\n"},
     {"one that is a number", "linuxcnc", "index_offset = 9\n",
      "m.toml:18:16: error: post.index_offset must be a text, is a whole number\n"},
+    {"an offset that a control of another kind takes", "fanuc", "transformation_takes_rotary_offset = true\n",
+     "m.toml:18:38: error: post.transformation_takes_rotary_offset: dialect \"fanuc\" has no such machine data, leave "
+     "it out\n"},
+    {"one without the transformation", "siemens", "transformation_takes_rotary_offset = true\n",
+     "m.toml:18:38: error: post.transformation_takes_rotary_offset: tcp = \"none\" has no words that it changes, "
+     "\"angles\" has; leave it out\n"},
+    {"one that is not taken", "siemens", "transformation_takes_rotary_offset = false\n", ""},
+    {"one that is a number", "siemens", "transformation_takes_rotary_offset = 1\n",
+     "m.toml:18:38: error: post.transformation_takes_rotary_offset must be true or false, is a whole number\n"},
     {"corner tolerance of LinuxCNC", "linuxcnc", "corner_tolerance = 0.1\n", ""},
     {"corner tolerance of a Fanuc", "fanuc", "corner_tolerance = 0.002\n", ""},
 

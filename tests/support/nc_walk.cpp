@@ -157,6 +157,8 @@ class Walker {
   bool inverse_ = false;
   std::array<double, 3> zero_{};
   bool freezes_ = false;
+  bool may_take_zero_ = false, zero_said_ = true;  // of a transformation that may drop it
+  std::array<double, 3> tip_zero_{};               // where `tip_` began
 
  private:
   void fault(const TextLine& line, const std::string& what) {
@@ -171,6 +173,10 @@ class Walker {
     next_.tip = tip_;
     next_.turned_deg = turned_;
     next_.zero_deg = zero_;
+    next_.granted = may_take_zero_ && tip_;
+    if (next_.granted && (zero_ != tip_zero_ || !zero_said_))
+      return fault(line, "words count from elsewhere than TRAORI has found, or TRAORI may have dropped it");
+    if (!zero_said_ && !next_.machine) return fault(line, "TRAFOOF may have dropped where words count from");
     next_.frozen = freezes_ && tip_;
     next_.tool = tool_;
     next_.length = length_;
@@ -338,6 +344,9 @@ class IsoWalker : public Walker {
 };
 
 class SiemensWalker : public Walker {
+ public:
+  SiemensWalker() { may_take_zero_ = true; }
+
  protected:
   std::string uncommented(const std::string& line) const override { return stripped(line.substr(0, line.find(';'))); }
   bool execute(const std::string& code) override {
@@ -366,12 +375,16 @@ class SiemensWalker : public Walker {
     } else if (matches(code, zero)) {
       turned_ = 0;
       zero_ = {};
+      zero_said_ = true;
       zero_.at(std::size_t(found_[1].str()[0] - 'A')) = number(found_[2]);
     } else if (code == "ROT" || code == "TRANS") {
       turned_ = 0;
       zero_ = {};
+      zero_said_ = true;
     } else if (code == "TRAORI" || code == "TRAFOOF") {
       tip_ = code == "TRAORI";
+      tip_zero_ = zero_;
+      zero_said_ = zero_ == std::array<double, 3>{};
     } else if (!matches(code, path)) {
       return words(code);
     }

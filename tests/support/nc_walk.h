@@ -18,6 +18,7 @@ struct NcMove {
   bool tip = false;                                ///< the control keeps the tip on the chord (TCP, CLDATA)
   double turned_deg = 0;                           ///< of the frame of X Y Z and the vector about Z of the work
   std::array<double, 3> zero_deg{};                ///< where the words of A B C count from
+  bool granted = false;                            ///< .. where the machine's transformation takes that: X Y Z, too
   bool frozen = false;                             ///< X Y Z name places of the work as it stood when `tip` began
   int tool = 0;                                    ///< in the spindle, 0: none
   bool length = false;                             ///< the length of the tool counts

@@ -50,6 +50,8 @@ PlainMachine::PlainMachine(const std::string& machine_file) {
   const auto values = values_of(machine_file);
   const std::string& dialect = values.at("dialect");
   control_ = dialect.substr(dialect.find('"') + 1, dialect.rfind('"') - dialect.find('"') - 1);
+  if (const auto p = values.find("post.transformation_takes_rotary_offset"); p != values.end())
+    takes_rotary_offset_ = p->second.find("true") != std::string::npos;
   for (const bool head : {false, true})
     for (const char c : values.at(head ? "chain.head" : "chain.table")) {
       if (std::string("ABC").find(c) == std::string::npos) continue;
@@ -64,6 +66,12 @@ PlainMachine::PlainMachine(const std::string& machine_file) {
       axis.sign = numbers_in(values.at(name + "sign")).at(0);
       (head ? head_ : table_).push_back(axis);
     }
+}
+
+PlainJoints PlainMachine::zeros_and(const std::array<double, 3>& more_deg) const {
+  PlainJoints out{};
+  for (const Axis& axis : table_) out[axis.index] = axis.zero + more_deg.at(axis.index - 3);
+  return out;
 }
 
 /// How the tool turns relative to the work.
@@ -161,6 +169,7 @@ class OnMachine {
       if (n.rotary[k]) m.to[3 + k] = *n.rotary[k] + (n.machine ? 0 : n.zero_deg[k]), known_[3 + k] = true;
     if (n.frozen && !frozen_) frozen_ = at_;
     if (!n.frozen) frozen_.reset();
+    if (n.granted && machine_.takes_rotary_offset()) frozen_ = machine_.zeros_and(n.zero_deg);
     const auto seen = [&](const Vec3& p) { return frozen_ ? machine_.off_table(*frozen_, p) : p; };
     const auto meant = [&](const Vec3& p) { return frozen_ ? machine_.on_table(*frozen_, p) : p; };
     const Eigen::AngleAxisd frame(n.turned_deg * kDegree, Vec3::UnitZ());

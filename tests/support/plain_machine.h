@@ -31,6 +31,10 @@ class PlainMachine {
   /// Rotaries near those given that turn the tool this way. Throws where none do.
   void turn_to(PlainJoints& joints, const Vec3& axis) const;
   [[nodiscard]] const std::string& control() const { return control_; }
+  /// Whether its transformation takes the rotary offset of the frame as the table's own.
+  [[nodiscard]] bool takes_rotary_offset() const { return takes_rotary_offset_; }
+  /// All rotaries at their zeros, the table's turned on by these, A B C deg.
+  [[nodiscard]] PlainJoints zeros_and(const std::array<double, 3>& more_deg) const;
 
  private:
   struct Axis {
@@ -41,6 +45,7 @@ class PlainMachine {
   [[nodiscard]] Mat3 turn(const Axis& axis, const PlainJoints& joints) const;
 
   std::string control_;
+  bool takes_rotary_offset_ = false;
   std::vector<Axis> table_, head_;  // from the work outwards, from the ram outwards
 };
 

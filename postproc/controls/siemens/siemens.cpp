@@ -1,11 +1,12 @@
 // Siemens 840D sl. TRAORI and TRAFOOF may drop the frames (machine data 10602), so that the work offset stands behind
-// each of them. TRANS lets the words of the index rotary count from the angle of the tooth. G641 ADIS is the way ahead
-// of and behind a corner within which the axes may leave the path; where cuts turn a rotary the text names the axes
-// whose travel is the way, and the compressor stays off. Where the proof leaves room CYCLE832 takes its place, with its
-// compressor: its tolerances bound the tip, and with TRAORI the rotaries. The teeth run in a FOR loop of the control;
-// with TRAORI the programmable frame ROT turns with them. MOD is for whole variables only there, so that the remainder
-// of the spread order is made with TRUNC, half a unit away from where it could fall on the wrong side. ORIAXES: the
-// rotaries are linear between the blocks, also where a block carries the tool vector A3 B3 C3.
+// each of them. TRANS lets the words of the index rotary count from the angle of the tooth; with TRAORI, too, where the
+// machine file says that it takes such an offset, and then it stands behind each of them as well. G641 ADIS is the way
+// ahead of and behind a corner within which the axes may leave the path; where cuts turn a rotary the text names the
+// axes whose travel is the way, and the compressor stays off. Where the proof leaves room CYCLE832 takes its place,
+// with its compressor: its tolerances bound the tip, and with TRAORI the rotaries. The teeth run in a FOR loop of the
+// control; with TRAORI the programmable frame ROT turns with them. MOD is for whole variables only there, so that the
+// remainder of the spread order is made with TRUNC, half a unit away from where it could fall on the wrong side.
+// ORIAXES: the rotaries are linear between the blocks, also where a block carries the tool vector A3 B3 C3.
 #include "postproc/controls/control.h"
 #include "postproc/controls/siemens/siemens_reader.h"
 #include "postproc/controls/work_offset.h"
@@ -79,6 +80,7 @@ text::NcDialect words() {
   d.rollover.backwards = "({teeth}-{tooth})";
   d.rollover.note = "{axis} ROLLS OVER: MODULO AXIS, 30310=1, 30330=360";
   d.loop.zero_on = {"TRANS {index_axis}=R2"};  // with TRAORI what it does is a matter of machine data
+  d.loop.zero_note = "TRAORI TAKES ROTARY OFFSETS FROM THE FRAME: MACHINE DATA 24590 (24690, ..) = 1";
   d.loop.zero_off = {"TRANS"};
   d.loop.frame_on = {"R3={frame_sign}{tooth}*360/{teeth}", "ROT Z=R3"};
   d.loop.frame_off = {"ROT"};

@@ -30,7 +30,7 @@ class Siemens {
       : file_(file),
         control_(control),
         lines_(readback::lines_of(text)),
-        execution_(control, {.reference_keeps_length = true}, sink),
+        execution_(control, {.tcp_may_take_zero = true, .reference_keeps_length = true}, sink),
         path_(control.letters) {}
 
   Status run() {
@@ -601,12 +601,14 @@ class Siemens {
       if (auto bad = placed(r.column, execution_.set_length(tool_))) return bad;
     if (r.traori)
       if (auto bad = placed(r.column, execution_.tcp_on())) return bad;
+    if ((r.traori || r.trafoof) && execution_.zero_is_moved()) zero_said_ = false;
     if (r.rot) {
       execution_.turn_frame(r.rot_deg);
-      if (auto bad = placed(r.column, execution_.clear_zeros())) return bad;
+      if (auto bad = placed(
+              r.column, r.trans ? execution_.replace_zeros(*r.trans, r.trans_deg, "TRANS") : execution_.clear_zeros()))
+        return bad;
+      zero_said_ = true;
     }
-    if (r.trans)
-      if (auto bad = placed(r.column, execution_.move_zero(*r.trans, r.trans_deg, "TRANS"))) return bad;
     // The tool, the spindle, coolants; a stop and the end stand behind the motion of their block.
     std::sort(r.m.begin(), r.m.end(), [](int a, int b) { return readback::group_of_m(a) < readback::group_of_m(b); });
     const bool stops = !r.m.empty() && readback::group_of_m(r.m.back()) == readback::kStops;
@@ -649,6 +651,10 @@ class Siemens {
       if (r.move.has[3] || r.move.has[4]) return here(r.column, "rotary words and a vector in a block");
       r.move.vector = Vec3(r.vector[0], r.vector[1], r.vector[2]);
     }
+    if (!zero_said_ && !r.supa)
+      return here(r.column,
+                  "axis word behind TRAORI or TRAFOOF, which may drop the frames (machine data 10602): TRANS must be "
+                  "said again, or ROT");
     if (motion_ < 0) return here(r.column, "axis word before G0 or G1");
     if (r.supa && motion_ != 0) return here(r.column, "SUPA with G1");
     if (motion_ == 1 && !corners_said_)
@@ -674,6 +680,7 @@ class Siemens {
   int motion_ = -1, tool_ = -1;
   tool_check::Unsaid unsaid_;
   bool ended_ = false;
+  bool zero_said_ = true;     // since TRAORI or TRAFOOF, where it was moved
   bool corners_said_ = true;  // since CYCLE832() was left
 };
 

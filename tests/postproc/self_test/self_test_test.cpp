@@ -5,11 +5,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "machines/machine_file.h"
 #include "tests/postproc/self_test/dry_run_text.h"
+#include "tests/support/files.h"
+#include "tests/support/plain_machine.h"
 
 namespace toothpath {
 namespace {
+
+using test::file_text;
 
 const char* const kMachines[] = {"t600s.toml",     "xyzac_large.toml",   "xyzac_trt.toml",
                                  "xyzbc_trt.toml", "head_table_bc.toml", "head_head_ca.toml",
@@ -98,6 +104,62 @@ TEST_P(SelfTestOf, AnotherMachineFailsTheProofOfTheJoints) {
   const auto proof = self_test::prove_self_test(test::dry_run_text(*test, m), "t", *test, wrong);
   ASSERT_FALSE(proof);
   EXPECT_EQ(proof.error().kind, DiagnosticKind::verification);
+}
+
+/// Places of the tip on the table in the moves of one part of the text, by readers of the tests' own.
+std::vector<Vec3> tips_behind(const std::string& text, const std::string& remark, const std::string& machine_file,
+                              const self_test::SelfTest& test) {
+  const test::PlainMachine machine(machine_file);
+  test::NcWalk walk = test::walk_nc(text, machine.control());
+  const test::PlainSetup setup{test.point_mm, {0, test.tool_length_mm}};
+  const auto moves = test::moves_on(machine, walk, setup);
+  for (const auto& fault : walk.faults) ADD_FAILURE() << fault;
+  const auto line_of = [&](std::size_t at) { return 1 + int(std::count(text.begin(), text.begin() + long(at), '\n')); };
+  const int first = line_of(text.find(remark)), last = line_of(text.find("\nM0\n", text.find(remark)));
+  std::vector<Vec3> out;
+  for (const auto& move : moves)
+    if (move.line > first && move.line <= last) out.push_back(test::place_on(machine, move, setup, 1).tip);
+  return out;
+}
+
+// The dials see whether TRAORI takes the offset: a wrong grant moves the tip by about a millimetre, a right one not at
+// all.
+TEST(SelfTest, AWrongGrantOfTheRotaryOffsetIsSeen) {
+  const std::string file = file_text(TOOTHPATH_SOURCE_DIR "/machines/data/siemens_ac.toml");
+  const std::string granted = file + "\n[post]\ntransformation_takes_rotary_offset = true\n";
+  for (const char* c : {"sign = 1\nmin = -36000", "sign = -1\nmin = -36000", "rollover = true"}) {
+    SCOPED_TRACE(c);
+    const auto with_c = [&](const std::string& text) {
+      const std::string range = "sign = 1\nmin = -36000.0\nmax = 36000.0";
+      if (std::string(c) == "rollover = true") return test::replaced(text, range, "sign = 1\nrollover = true");
+      return test::replaced(text, "sign = 1\nmin = -36000", c);
+    };
+    const auto read = [&](const std::string& text) {
+      const auto result = machines::read_machine_text(with_c(text), "m.toml");
+      EXPECT_TRUE(result.machine);
+      return *result.machine;
+    };
+    const machines::Machine m = read(granted), plain = read(file);
+    const auto test = self_test::plan_self_test(m), without = self_test::plan_self_test(plain);
+    ASSERT_TRUE(test && without);
+    ASSERT_EQ(test->stations.size(), without->stations.size() + 1);
+    ASSERT_NE(test->stations.back().zero_deg, 0);
+    EXPECT_EQ(test::dry_run_text(*without, plain).find("TRANS"), std::string::npos);
+
+    const std::string text = test::dry_run_text(*test, m);
+    const auto proof = self_test::prove_self_test(text, "t", *test, m);
+    ASSERT_TRUE(proof) << proof.error().text() << text;
+    ASSERT_EQ(proof->readings_mm.size(), test->stations.size());
+    EXPECT_LT(proof->readings_mm.back().norm(), 1e-4);
+    const auto right = tips_behind(text, "COUNTS FROM", with_c(granted), *test);
+    const auto wrong = tips_behind(text, "COUNTS FROM", with_c(file), *test);
+    ASSERT_FALSE(right.empty() || wrong.empty());
+    for (const Vec3& tip : right) EXPECT_LT((tip - test->point_mm).norm(), 1e-4) << text;
+    EXPECT_GT((wrong.back() - test->point_mm).norm(), 0.9);
+    EXPECT_LT((wrong.back() - test->point_mm).norm(), 1.1);
+    // With TCP off nothing asks.
+    EXPECT_EQ(self_test::plan_self_test(self_test::without_tcp(m))->stations.back().zero_deg, 0);
+  }
 }
 
 TEST(SelfTest, RefusesWhatItCannotTest) {

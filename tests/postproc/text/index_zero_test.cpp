@@ -55,33 +55,36 @@ constexpr const char* kG921 = R"(G92\.1\n)";
 constexpr const char* kG52Off = R"(G52 X0\. Y0\. Z0\. C0\. A0\.\n)";
 INSTANTIATE_TEST_SUITE_P(
     Forms, IndexZero,
-    testing::Values(ZeroForm{{"linuxcnc", machines::TcpMode::none, 0.1, false}, kLoopG52, kG921},
-                    ZeroForm{{"linuxcnc", machines::TcpMode::none, 0.1, false, 1}, kLoopG52, kG921},
-                    ZeroForm{{"linuxcnc", machines::TcpMode::none, 0.1, false, -1}, kLoopG52, kG921},
-                    ZeroForm{{"linuxcnc", machines::TcpMode::angles, 0.1, false}, kLoopG52, kG921},
-                    ZeroForm{{"linuxcnc", machines::TcpMode::angles, 0.1, false, -1}, kLoopG52, kG921},
-                    ZeroForm{{"fanuc", machines::TcpMode::none, 0.1, false}, kG52, kG52Off},
-                    ZeroForm{{"fanuc", machines::TcpMode::angles, 0.1, false}, kG52, kG52Off},
-                    ZeroForm{{"fanuc", machines::TcpMode::angles, 0.1, false, -1}, kG52, kG52Off},
-                    ZeroForm{{"mitsubishi_m80", machines::TcpMode::none, 0.1, false}, kG52, kG52Off},
-                    ZeroForm{{"haas", machines::TcpMode::none, 0.1, false}, kG52, kG52Off},
-                    ZeroForm{{"siemens", machines::TcpMode::none, 0.1, false}, R"(TRANS C=(R2)\n)", R"(TRANS\n)"},
-                    ZeroForm{{"siemens", machines::TcpMode::none, 0.1, false, 1}, R"(TRANS C=(R2)\n)", R"(TRANS\n)"},
-                    ZeroForm{{"heidenhain", machines::TcpMode::none, 0, false},
-                             R"(CYCL DEF 7.1 C(\+Q2)\n)",
-                             R"(TRANS DATUM RESET\n)"},
-                    ZeroForm{{"heidenhain", machines::TcpMode::angles, 0.1, false},
-                             R"(CYCL DEF 7.1 C(\+Q2)\n)",
-                             R"(TRANS DATUM RESET\n)"}));
+    testing::Values(
+        ZeroForm{{"linuxcnc", machines::TcpMode::none, 0.1, false}, kLoopG52, kG921},
+        ZeroForm{{"linuxcnc", machines::TcpMode::none, 0.1, false, 1}, kLoopG52, kG921},
+        ZeroForm{{"linuxcnc", machines::TcpMode::none, 0.1, false, -1}, kLoopG52, kG921},
+        ZeroForm{{"linuxcnc", machines::TcpMode::angles, 0.1, false}, kLoopG52, kG921},
+        ZeroForm{{"linuxcnc", machines::TcpMode::angles, 0.1, false, -1}, kLoopG52, kG921},
+        ZeroForm{{"fanuc", machines::TcpMode::none, 0.1, false}, kG52, kG52Off},
+        ZeroForm{{"fanuc", machines::TcpMode::angles, 0.1, false}, kG52, kG52Off},
+        ZeroForm{{"fanuc", machines::TcpMode::angles, 0.1, false, -1}, kG52, kG52Off},
+        ZeroForm{{"mitsubishi_m80", machines::TcpMode::none, 0.1, false}, kG52, kG52Off},
+        ZeroForm{{"haas", machines::TcpMode::none, 0.1, false}, kG52, kG52Off},
+        ZeroForm{{"siemens", machines::TcpMode::none, 0.1, false}, R"(TRANS C=(R2)\n)", R"(TRANS\n)"},
+        ZeroForm{{"siemens", machines::TcpMode::none, 0.1, false, 1}, R"(TRANS C=(R2)\n)", R"(TRANS\n)"},
+        ZeroForm{{"siemens", machines::TcpMode::angles, 0.1, false, 0, true}, R"(TRANS C=(R2)\n)", R"(TRANS\n)"},
+        ZeroForm{{"siemens", machines::TcpMode::angles, 0.1, false, 1, true}, R"(TRANS C=(R2)\n)", R"(TRANS\n)"},
+        ZeroForm{{"siemens", machines::TcpMode::angles, 0.1, false, -1, true}, R"(TRANS C=(R2)\n)", R"(TRANS\n)"},
+        ZeroForm{
+            {"heidenhain", machines::TcpMode::none, 0, false}, R"(CYCL DEF 7.1 C(\+Q2)\n)", R"(TRANS DATUM RESET\n)"},
+        ZeroForm{{"heidenhain", machines::TcpMode::angles, 0.1, false},
+                 R"(CYCL DEF 7.1 C(\+Q2)\n)",
+                 R"(TRANS DATUM RESET\n)"}));
 
 // Every tooth is a turned copy, and no word holds a sum.
 TEST_P(IndexZero, OneToothStandsForAll) {
   EXPECT_EQ(reading(text), "");
   const std::string words = edited("G52 [^\n]*|G10 [^\n]*", "", true);
   EXPECT_FALSE(std::regex_search(words, std::regex(R"([CA]=?(DC\(|\[|\+)?(ABS|R2\+|#1|Q5))"))) << text.substr(0, 3000);
-  const auto written =
-      program_of({GetParam().form.dialect, GetParam().form.tcp, GetParam().form.swing, true, GetParam().form.rollover},
-                 paths, kZeroTeeth, 1);
+  const auto written = program_of({GetParam().form.dialect, GetParam().form.tcp, GetParam().form.swing, true,
+                                   GetParam().form.rollover, GetParam().form.granted},
+                                  paths, kZeroTeeth, 1);
   ASSERT_TRUE(written);
   PostForm expanded = GetParam().form;
   expanded.expand = true;
@@ -161,6 +164,38 @@ TEST_P(IndexZero, WhatIsWrongWithItIsFound) {
     EXPECT_NE(reading(never).find("what an earlier program has left is not known"), std::string::npos)
         << reading(never);
   }
+}
+
+// TRAORI in a moved zero is a matter of machine data: the machine file must grant it. TRAORI and TRAFOOF may drop the
+// frames, so that TRANS stands behind each.
+TEST(IndexZeroWithTraori, IsReadWhereItIsGrantedAndSaidAgain) {
+  const PostForm form{"siemens", machines::TcpMode::angles, 0.1, false, 0, true};
+  const auto program = program_of(form, {sample_path(0.3, 0.1, 4)}, 3, 1);
+  ASSERT_TRUE(program && program->loop);
+  const std::string text = text_of(form, *program)->text;
+  const machines::Machine m = machine_of(form);
+  const auto reading = [&](const std::string& of, bool granted = true) {
+    auto control = controls::control_of(m, standing(), tools());
+    control->transformation_takes_rotary_offset = granted;
+    const auto read = readback::execute_nc(of, "p", *control, [](const readback::ExecutedMove&) {});
+    return read ? std::string() : read.error().message;
+  };
+  EXPECT_EQ(reading(text), "");
+  EXPECT_NE(text.find("TRAORI TAKES ROTARY OFFSETS FROM THE FRAME"), std::string::npos);
+  EXPECT_EQ(text.find("ROT Z="), std::string::npos) << text;
+  EXPECT_NE(reading(text, false).find("post.transformation_takes_rotary_offset of the machine file does not grant it"),
+            std::string::npos)
+      << reading(text, false);
+  const auto edited = [&](const std::string& pattern, const std::string& to) {
+    const std::string out = std::regex_replace(text, std::regex(pattern), to);
+    EXPECT_NE(out, text) << pattern;
+    return reading(out);
+  };
+  const std::string behind = "(TRAORI\nG54\nORIWKS\nORIAXES\n)TRANS C=R2\n";
+  EXPECT_NE(edited(behind, "$1").find("TRANS must be said again"), std::string::npos) << edited(behind, "$1");
+  EXPECT_NE(edited(behind, "$1TRANS C=R2+1\n").find("with TCP on"), std::string::npos);
+  EXPECT_NE(edited(behind, "$1TRANS\n").find("with TCP on"), std::string::npos);
+  EXPECT_NE(edited(behind, "$1TRANS A=1\n").find("with TCP on"), std::string::npos);
 }
 
 // The zero stays where it is while the control keeps the tip.

@@ -11,9 +11,10 @@ namespace toothpath::test {
 struct PostForm {
   const char* dialect;
   machines::TcpMode tcp;
-  double swing;      ///< turn of the tool axis inside a pass
-  bool expand;       ///< every tooth written out
-  int rollover = 0;  ///< C rolls over and its index rises (1) or falls (-1)
+  double swing;          ///< turn of the tool axis inside a pass
+  bool expand;           ///< every tooth written out
+  int rollover = 0;      ///< C rolls over and its index rises (1) or falls (-1)
+  bool granted = false;  ///< Siemens: TRAORI takes the rotary offset of the frame
 };
 
 inline void PrintTo(const PostForm& f, std::ostream* out) {
@@ -21,7 +22,7 @@ inline void PrintTo(const PostForm& f, std::ostream* out) {
        << (f.tcp == machines::TcpMode::none     ? ""
            : f.tcp == machines::TcpMode::angles ? "_tcp"
                                                 : "_vectors")
-       << (f.expand ? "_written" : "")
+       << (f.granted ? "_granted" : "") << (f.expand ? "_written" : "")
        << (f.rollover > 0   ? "_rollover"
            : f.rollover < 0 ? "_rollover_back"
                             : "");
@@ -45,6 +46,8 @@ inline const std::vector<PostForm>& rollover_forms() {
                                 PostForm{"siemens", machines::TcpMode::none, 0.1, false},
                                 PostForm{"siemens", machines::TcpMode::none, 0.1, true},
                                 PostForm{"siemens", machines::TcpMode::angles, 0.1, false},
+                                PostForm{"siemens", machines::TcpMode::angles, 0.1, false, 0, true},
+                                PostForm{"siemens", machines::TcpMode::angles, 0.1, true, 0, true},
                                 PostForm{"siemens", machines::TcpMode::vectors, 0.1, false},
                                 PostForm{"siemens", machines::TcpMode::vectors, 0.1, true},
                                 PostForm{"heidenhain", machines::TcpMode::none, 0, false},
@@ -62,18 +65,29 @@ inline const std::vector<PostForm>& rollover_forms() {
 
 /// Every form, C counted continuously and rolling over.
 inline const std::vector<PostForm>& post_forms() {
-  static const std::vector<PostForm> forms = {
-      {"linuxcnc", machines::TcpMode::none, 0.1, false},     {"linuxcnc", machines::TcpMode::none, 0.1, true},
-      {"linuxcnc", machines::TcpMode::angles, 0.1, true},    {"fanuc", machines::TcpMode::none, 0, false},
-      {"fanuc", machines::TcpMode::none, 0.1, true},         {"fanuc", machines::TcpMode::angles, 0.1, true},
-      {"fanuc", machines::TcpMode::none, 0.1, false},        {"fanuc", machines::TcpMode::angles, 0.1, false},
-      {"haas", machines::TcpMode::none, 0.1, false},         {"heidenhain", machines::TcpMode::angles, 0.1, false},
-      {"mitsubishi_m80", machines::TcpMode::none, 0, false}, {"haas", machines::TcpMode::none, 0.1, true},
-      {"siemens", machines::TcpMode::none, 0.1, false},      {"siemens", machines::TcpMode::angles, 0.1, false},
-      {"siemens", machines::TcpMode::vectors, 0.1, false},   {"siemens", machines::TcpMode::vectors, 0.1, true},
-      {"heidenhain", machines::TcpMode::none, 0, false},     {"heidenhain", machines::TcpMode::angles, 0, false},
-      {"heidenhain", machines::TcpMode::vectors, 0.1, true}, {"apt", machines::TcpMode::vectors, 0.1, true},
-      {"linuxcnc", machines::TcpMode::angles, 0.1, false}};
+  static const std::vector<PostForm> forms = {{"linuxcnc", machines::TcpMode::none, 0.1, false},
+                                              {"linuxcnc", machines::TcpMode::none, 0.1, true},
+                                              {"linuxcnc", machines::TcpMode::angles, 0.1, true},
+                                              {"fanuc", machines::TcpMode::none, 0, false},
+                                              {"fanuc", machines::TcpMode::none, 0.1, true},
+                                              {"fanuc", machines::TcpMode::angles, 0.1, true},
+                                              {"fanuc", machines::TcpMode::none, 0.1, false},
+                                              {"fanuc", machines::TcpMode::angles, 0.1, false},
+                                              {"haas", machines::TcpMode::none, 0.1, false},
+                                              {"heidenhain", machines::TcpMode::angles, 0.1, false},
+                                              {"mitsubishi_m80", machines::TcpMode::none, 0, false},
+                                              {"haas", machines::TcpMode::none, 0.1, true},
+                                              {"siemens", machines::TcpMode::none, 0.1, false},
+                                              {"siemens", machines::TcpMode::angles, 0.1, false},
+                                              {"siemens", machines::TcpMode::vectors, 0.1, false},
+                                              {"siemens", machines::TcpMode::vectors, 0.1, true},
+                                              {"heidenhain", machines::TcpMode::none, 0, false},
+                                              {"heidenhain", machines::TcpMode::angles, 0, false},
+                                              {"heidenhain", machines::TcpMode::vectors, 0.1, true},
+                                              {"apt", machines::TcpMode::vectors, 0.1, true},
+                                              {"linuxcnc", machines::TcpMode::angles, 0.1, false},
+                                              {"siemens", machines::TcpMode::angles, 0.1, false, 0, true},
+                                              {"siemens", machines::TcpMode::angles, 0.1, true, 0, true}};
   static const std::vector<PostForm> all = [] {
     std::vector<PostForm> list = forms;
     for (const auto& f : rollover_forms()) list.push_back(f);
@@ -92,6 +106,7 @@ inline void roll_over(machines::RotaryAxis& axis, int sense) {
 
 inline machines::Machine machine_of(const PostForm& f) {
   machines::Machine m = trunnion_with(f.dialect, f.tcp);
+  m.post.transformation_takes_rotary_offset = f.granted;
   if (f.rollover != 0) roll_over(m.chain.table[0], f.rollover);
   return m;
 }
