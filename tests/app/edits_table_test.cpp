@@ -233,11 +233,11 @@ void edit_links(const Editable& p, Rows& out) {
   out.emplace_back("sign of C in a link",
                    apt ? std::nullopt
                        : signed_otherwise(all, heidenhain ? "^\\d+ L C|FN 1: Q5 = \\+Q2 \\+ "
-                                               : siemens  ? "^G0 C=R2|CYCLE800\\(0,\"\",0,39,0,0,[0-9]+,R2"
+                                               : siemens  ? "^G0 C=(?:R2)?|CYCLE800\\(0,\"\",0,39,0,0,[0-9]+,R2"
                                                           : "^G0 C|^G68.2 .* I"));
   out.emplace_back("sign of C in a cut", apt ? std::nullopt
                                              : signed_otherwise(all, heidenhain ? "^\\d+ L X.* C"
-                                                                     : siemens  ? "^G1 X.* C=R2"
+                                                                     : siemens  ? "^G1 X.* C=(?:R2)?"
                                                                                 : "^G1 X.* C"));
   out.emplace_back("sign of A in a link",
                    apt ? std::nullopt
@@ -265,7 +265,8 @@ void edit_links(const Editable& p, Rows& out) {
   }
 }
 
-/// Where the words of LinuxCNC's loops count from. (The zeros of other controls: IndexZero in tests/postproc.)
+/// Where the words of LinuxCNC's loops count from, and those of Siemens with TRAORI. (The zeros of other controls:
+/// IndexZero in tests/postproc.)
 void edit_zeros(const Editable& p, Rows& out) {
   const Lines& all = p.lines();
   const bool loop = p.control() == "linuxcnc" && find(all, "^G52 C\\[");
@@ -281,6 +282,19 @@ void edit_zeros(const Editable& p, Rows& out) {
   auto sign = replaced(all, angle + "0-", "$1");
   if (!sign) sign = replaced(all, angle, "$010-");
   out.emplace_back("sign of R in G10", turned ? sign : std::nullopt);
+  // TRANS ahead of TRAORI, behind it, behind TRAFOOF, and behind the teeth; all of the text: there is none.
+  const std::size_t none = all.size();
+  const bool takes = p.control() == "siemens" && find(all, "^TRANS C=R2$") && find(all, "^TRAORI$");
+  const std::size_t traori = takes ? find(all, "^TRAORI$").value_or(none) : none;
+  const std::size_t trafoof = find(all, "^TRAFOOF$", traori).value_or(none);
+  const std::size_t ahead = takes ? 0 : none;
+  out.emplace_back("TRANS ahead of TRAORI left out", dropped(all, "^TRANS C=R2$", ahead));
+  out.emplace_back("TRANS behind TRAORI left out", dropped(all, "^TRANS C=R2$", traori));
+  out.emplace_back("TRANS behind TRAFOOF left out", dropped(all, "^TRANS C=R2$", trafoof));
+  out.emplace_back("TRANS behind the teeth left out", dropped(all, "^TRANS$", trafoof));
+  out.emplace_back("another angle behind TRAORI", replaced(all, "^TRANS C=R2$", "TRANS C=R2+0.1", traori));
+  out.emplace_back("another angle ahead of TRAORI and behind it", replaced(all, "^(R2=.*)$", "$1+0.1", ahead));
+  out.emplace_back("ROT beside TRANS", replaced(all, "^TRANS C=R2$", "ROT Z=R2", traori));
 }
 
 void edit_conditions(const Editable& p, Rows& out) {

@@ -19,29 +19,31 @@ namespace toothpath::test {
 
 struct OutputForm {
   const char *control, *tcp;
-  bool loop;  ///< teeth as loop or sub-programs
+  bool loop;             ///< teeth as loop or sub-programs
+  bool granted = false;  ///< Siemens: TRAORI takes the rotary offset of the frame
 
   [[nodiscard]] std::string name() const {
-    return fmt::format("{}{}{}", control, tcp == std::string("none") ? "" : std::string(" ") + tcp,
-                       loop ? " loop" : "");
+    return fmt::format("{}{}{}{}", control, tcp == std::string("none") ? "" : std::string(" ") + tcp,
+                       loop ? " loop" : "", granted ? " granted" : "");
   }
 };
 
 /// Every form. The first ten, of the face gears of a check, have every control, with and without TCP, with vectors, in
 /// loops and written out; the next six are those of the bevel gears.
 inline constexpr OutputForm kForms[] = {
-    {"linuxcnc", "none", true},        {"mitsubishi_m80", "none", true}, {"siemens", "vectors", true},
-    {"heidenhain", "angles", true},    {"apt", "vectors", false},        {"haas", "none", false},
-    {"fanuc", "angles", false},        {"fanuc", "none", true},          {"heidenhain", "none", true},
-    {"linuxcnc", "angles", false},     {"heidenhain", "vectors", true},  {"siemens", "angles", true},
-    {"siemens", "none", true},         {"siemens", "angles", false},     {"linuxcnc", "none", false},
-    {"siemens", "vectors", false},     {"heidenhain", "none", false},    {"heidenhain", "angles", false},
-    {"heidenhain", "vectors", false},  {"siemens", "none", false},       {"fanuc", "none", false},
-    {"mitsubishi_m80", "none", false}, {"linuxcnc", "angles", true}};
-/// Those ten, and the one that turns a work offset.
+    {"linuxcnc", "none", true},        {"mitsubishi_m80", "none", true},  {"siemens", "vectors", true},
+    {"heidenhain", "angles", true},    {"apt", "vectors", false},         {"haas", "none", false},
+    {"fanuc", "angles", false},        {"fanuc", "none", true},           {"heidenhain", "none", true},
+    {"linuxcnc", "angles", false},     {"heidenhain", "vectors", true},   {"siemens", "angles", true},
+    {"siemens", "none", true},         {"siemens", "angles", false},      {"linuxcnc", "none", false},
+    {"siemens", "vectors", false},     {"heidenhain", "none", false},     {"heidenhain", "angles", false},
+    {"heidenhain", "vectors", false},  {"siemens", "none", false},        {"fanuc", "none", false},
+    {"mitsubishi_m80", "none", false}, {"siemens", "angles", true, true}, {"linuxcnc", "angles", true}};
+/// Those ten, the one that turns a work offset and the one that turns the table of a transformation.
 inline std::vector<OutputForm> planted_forms() {
   std::vector<OutputForm> out = {std::begin(kForms), std::begin(kForms) + 10};
   out.push_back(kForms[std::size(kForms) - 1]);
+  out.push_back(kForms[std::size(kForms) - 2]);
   return out;
 }
 
@@ -64,6 +66,7 @@ inline std::string random_machine(const OutputForm& form, Random& random) {
   for (const char* sign : {"sign = -1\nmin = -110", "sign = -1\nmin = -36000"})
     if (random(0, 1) < 0.5) replace_once(text, sign, std::string("sign = 1") + (sign + 9));
   text += fmt::format("\n[post]\nindex_loop = {}\n", form.loop);
+  if (form.granted) text += "transformation_takes_rotary_offset = true\n";
   if (form.control == std::string("linuxcnc") && form.tcp != std::string("none"))
     text +=
         std::string("tcp_on = [\"M428\"]\ntcp_off = [\"M429\"]\n") + (form.loop ? "index_offset = \"G59.3\"\n" : "");
