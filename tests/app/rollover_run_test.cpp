@@ -62,7 +62,8 @@ TEST_P(RolloverRun, IsVerifiedAndReadBack) {
   EXPECT_NE(program.find(c.note), std::string::npos) << program.substr(0, 1500);
   std::size_t words = 0;
   const std::regex word(c.word);
-  for (std::sregex_iterator it(program.begin(), program.end(), word), end; it != end; ++it) {
+  const std::string code = std::regex_replace(program, std::regex("\n\\([^\n]*"), "");  // a hash may look like a word
+  for (std::sregex_iterator it(code.begin(), code.end(), word), end; it != end; ++it) {
     ++words;
     EXPECT_LT(std::abs(std::stod((*it)[1])), 360);
   }
