@@ -10,7 +10,9 @@ namespace {
 
 using Complex = std::complex<double>;
 constexpr int kMostRounds = 2000;
-constexpr double kChange = 1e-8;  // of the pressures in a round, part of the force
+constexpr double kChange = 1e-8;     // of the pressures in a round, part of the force
+constexpr double kFits = 1e-6;       // overlap, and gap under pressure, part of the approach
+constexpr double kRounding = 1e-12;  // what is left of the gaps of pressed cells, part of the approach
 
 /// The next length with no other factors than 2, 3 and 5.
 int quick_length(int least) {
@@ -87,6 +89,7 @@ class Search {
       influence_.emplace_back(w, problem.compliance);
       gap_.insert(gap_.end(), w.gap.begin(), w.gap.end());
       area_.insert(area_.end(), w.size(), w.dx * w.dy);
+      own_.insert(own_.end(), w.size(), problem.compliance * rectangle_influence(0, 0, w.dx / 2, w.dy / 2));
       for (std::size_t k = 0; k < w.size(); ++k) lever_.push_back(w.lever_of(k));
     }
     n_ = gap_.size();
@@ -103,15 +106,19 @@ class Search {
     balance();
     double G_old = 1;
     bool conjugate = false;
+    CellPressures found;
     for (int round = 1; round <= kMostRounds; ++round) {
       displace(p_, u_);
       const double X = mean(u_, true);
       const double G = step(G_old, conjugate);
       const double change = descend(X, conjugate);
       G_old = G;
-      if (change < kChange) return finish(round);
+      if (!(change < kChange)) continue;
+      found = finish(round);  // small steps alone do not tell that cells fit
+      if (found.residual < kFits) return found;
     }
-    return fail("the pressures of {} cells do not settle within {} rounds", n_, kMostRounds);
+    return fail("the pressures of {} cells do not settle within {} rounds: {:g} of the approach is left, limit {:g}",
+                n_, kMostRounds, finish(kMostRounds).residual, kFits);
   }
 
  private:
@@ -164,36 +171,57 @@ class Search {
   /// The direction of the next step; the squared rest.
   double step(double G_old, bool conjugate) {
     const double X = mean(u_, true);
-    double G = 0;
+    double G = 0, area = 0;
     for (std::size_t k = 0; k < n_; ++k)
       if (p_[k] > 0) {
         const double r = open(k, X);
-        G += area_[k] * r * r;
+        G += area_[k] * r * r, area += area_[k];
       }
+    still_ = !(G > area * kRounding * kRounding * X * X);
     for (std::size_t k = 0; k < n_; ++k) t_[k] = p_[k] > 0 ? open(k, X) + (conjugate ? G / G_old * t_[k] : 0) : 0;
     return G;
   }
-  /// Along the direction to the least energy; lets go what would pull, presses what overlaps. The change, part of F.
-  double descend(double X, bool& conjugate) {
+  /// How far along the direction the energy is least; not above 0: it does not fall that way.
+  double way(double X) {
     displace(t_, q_);
     const double q_mean = mean(q_, false);
     double rt = 0, qt = 0;
     for (std::size_t k = 0; k < n_; ++k)
       if (p_[k] > 0) rt += area_[k] * open(k, X) * t_[k], qt += area_[k] * (q_[k] - lever_[k] * q_mean) * t_[k];
-    const double tau = qt > 0 ? rt / qt : 0;
+    return qt > 0 ? rt / qt : 0;
+  }
+  /// Along the direction to the least energy; lets go what would pull, presses what overlaps. The change, part of F.
+  double descend(double X, bool& conjugate) {
+    double tau = still_ ? 0 : way(X);
+    if (!still_ && !(tau > 0)) {  // what was conjugate on other cells is none on these: straight down
+      for (std::size_t k = 0; k < n_; ++k) t_[k] = p_[k] > 0 ? open(k, X) : 0;
+      tau = std::max(0.0, way(X));
+    }
     old_ = p_;
     conjugate = true;
     for (std::size_t k = 0; k < n_; ++k) {
       if (old_[k] > 0) p_[k] = std::max(0.0, old_[k] - tau * t_[k]);
       else if (std::isfinite(gap_[k]) && open(k, X) < 0) {
-        p_[k] = std::max(0.0, -tau * open(k, X));
+        // Where pressed cells fit each other there is no step to take from: as far as the cell alone would give way.
+        p_[k] = tau > 0 ? std::max(0.0, -tau * open(k, X)) : -open(k, X) / own_[k];
         conjugate = false;
       }
+    }
+    if (std::none_of(p_.begin(), p_.end(), [](double p) { return p > 0; })) {
+      p_[deepest(X)] = 1;  // the step let go all: begin again where the bodies overlap most
+      conjugate = false;
     }
     balance();
     double change = 0;
     for (std::size_t k = 0; k < n_; ++k) change += area_[k] * std::abs(p_[k] - old_[k]);
     return change / problem_.force;
+  }
+  [[nodiscard]] std::size_t deepest(double X) const {
+    std::size_t at = 0;
+    double least = kNoMaterial;
+    for (std::size_t k = 0; k < n_; ++k)
+      if (std::isfinite(gap_[k]) && open(k, X) < least) least = open(k, X), at = k;
+    return at;
   }
   CellPressures finish(int rounds) {
     displace(p_, u_);
@@ -212,7 +240,9 @@ class Search {
   const CellProblem& problem_;
   std::vector<WindowInfluence> influence_;
   std::size_t n_ = 0;
-  std::vector<double> gap_, area_, lever_, p_, u_, t_, q_, old_;
+  bool still_ = false;  ///< the pressed cells fit each other to rounding
+  /// own_: displacement of a cell under its own pressure of 1.
+  std::vector<double> gap_, area_, own_, lever_, p_, u_, t_, q_, old_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 // Derivation: docs/loaded_contact.md 5, 8.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "geometry/loaded/contact_line.h"
@@ -43,6 +44,10 @@ struct CellSite {
        along = Vec3::Zero();  ///< sides of the rectangle: of the larger relative curvature; n x across
   double curvature = 0;       ///< relative, across, 1/mm
   double x = 0, y = 0, half_x = 0, half_y = 0;  ///< the rectangle: its middle from `point`, half its sides
+  /// Where its flanks touch first, (x, y) in the plane: its gap, counted as those of the places, and its lever.
+  Vec2 first = Vec2::Zero();
+  double first_gap = std::numeric_limits<double>::infinity();  ///< infinite: not known beside the cells
+  double first_lever = 1;
 };
 
 /// A place of the gear's flank above a point of the plane.

@@ -13,12 +13,14 @@ namespace toothpath::loaded {
 namespace {
 
 constexpr int kColumns = 48, kRows = 64;
-constexpr int kCoarse = 2;          // cells of a side that are one while windows are fitted
-constexpr double kIdle = 1.2;       // approaches: flanks farther apart do not touch when others do
-constexpr double kMargin = 1.3;     // windows reach so far beyond what presses
-constexpr double kLoose = 2.2;      // a window so much wider than what presses is drawn together
-constexpr double kSmallest = 1e-4;  // mm: windows are not drawn together around less, as at a corner of stiff teeth
-constexpr int kMostFits = 24;       // rounds of fitting the windows
+constexpr int kCoarse = 2;            // cells of a side that are one while windows are fitted
+constexpr double kIdle = 1.2;         // approaches: flanks farther apart do not touch when others do
+constexpr double kMargin = 1.3;       // windows reach so far beyond what presses
+constexpr double kLoose = 2.2;        // a window so much wider than what presses is drawn together
+constexpr double kSmallest = 1e-4;    // mm: windows are not drawn together around less, as at a corner of stiff teeth
+constexpr int kMostFits = 24;         // rounds of fitting the windows
+constexpr int kCloser = 8;            // a window is drawn together by so much at once
+constexpr double kTouchKnown = 1e-8;  // mm: first touch of rigid flanks is known so far
 
 /// The window of one tooth.
 struct ToothWindow {
@@ -57,7 +59,10 @@ class Cells {
         auto found = motions(force());
         if (!found) return found.error();
         last_ = *found;
-        if (!refit(*found, side == 1)) break;
+        if (const auto known = above_first_touch(); !known) return known.error();
+        const auto changed = refit(*found, side == 1);
+        if (!changed) return changed.error();
+        if (!*changed) break;
       }
       if (fit == kMostFits) return fail("the contact at {:.4f} deg outgrows its cells", degrees(phi_));
       if (side > 1) drop_idle();
@@ -170,10 +175,10 @@ class Cells {
   /// Leaves out the teeth that stand off while others carry.
   void drop_idle() {
     double first = kNoMaterial;
-    for (const ToothWindow& w : windows_) first = std::min(first, first_touch(w));
-    std::erase_if(windows_, [&](const ToothWindow& w) {
-      return first_touch(w) - first > kIdle * last_.approach + std::abs(shift_);
-    });
+    const auto nearest = [&](const ToothWindow& w) { return std::min(first_touch(w), first_of(w.site)); };
+    for (const ToothWindow& w : windows_) first = std::min(first, nearest(w));
+    std::erase_if(windows_,
+                  [&](const ToothWindow& w) { return nearest(w) - first > kIdle * last_.approach + std::abs(shift_); });
   }
 
   /// Approach and, where the pinion is free, its shift: the rest grows with the shift, so its zero is closed in, from
@@ -219,35 +224,73 @@ class Cells {
     return found;
   }
 
+  /// Gaps that count from first touch: an approach that is lost in what first touch is known to.
+  [[nodiscard]] Status above_first_touch() const {
+    if (!bodies_.from_touch || last_.approach > kTouchKnown || load_.axial != PinionAxial::held) return Ok{};
+    return fail(
+        "at {:.4f} deg the load of {:g} N lets the flanks approach by {:.3g} mm; first touch of rigid flanks is known "
+        "to {:g} mm: a larger torque or softer teeth are needed",
+        degrees(phi_), force(), last_.approach, kTouchKnown);
+  }
+  /// Cells see the place where a tooth touches first from their own middles on. True: they miss more of its overlap
+  /// than they see, as at a corner under stiff teeth.
+  [[nodiscard]] bool misses_first(const ToothWindow& w, double approach) const {
+    const double first = first_of(w.site), seen = first_touch(w);
+    return first < approach && seen - first > approach - seen;
+  }
+
   /// Draws the windows around what presses. False: they fit already. @param only_rim  widens only what is too narrow
-  bool refit(const CellPressures& found, bool only_rim) {
+  /// Refused: a corner that the smallest cells do not see.
+  Result<bool> refit(const CellPressures& found, bool only_rim) {
     bool changed = false;
     std::size_t at = 0;
     for (ToothWindow& w : windows_) {
       const CellWindow& c = w.cells;
       CellSite& site = w.site;
-      int from_x = c.columns, to_x = -1, from_y = c.rows, to_y = -1;
-      bool rim = false;
-      for (int row = 0; row < c.rows; ++row)
-        for (int column = 0; column < c.columns; ++column) {
-          if (!(found.pressure[at + static_cast<std::size_t>(row * c.columns + column)] > 0)) continue;
-          from_x = std::min(from_x, column), to_x = std::max(to_x, column);
-          from_y = std::min(from_y, row), to_y = std::max(to_y, row);
-          rim |= column == 0 || column == c.columns - 1 || row == 0 || row == c.rows - 1;
-        }
+      const double* pressure = found.pressure.data() + at;
       at += c.size();
-      if (to_x < 0) continue;  // nothing presses here
-      const double wide = std::max((to_x - from_x + 1) * c.dx, kSmallest),
-                   high = std::max((to_y - from_y + 1) * c.dy, kSmallest);
-      if (!rim && (only_rim || (2 * site.half_x < kLoose * wide && 2 * site.half_y < kLoose * high))) continue;
-      site.x += (from_x + to_x + 1) * c.dx / 2 - site.half_x, site.y += (from_y + to_y + 1) * c.dy / 2 - site.half_y;
-      const double grow = rim ? 2 * kMargin : kMargin;
-      site.half_x = std::max(grow * wide / 2, site.half_x / 8),
-      site.half_y = std::max(grow * high / 2, site.half_y / 8);
-      fill(w, c.columns, c.rows);
-      changed = true;
+      if (misses_first(w, found.approach)) {
+        if (2 * site.half_x <= kSmallest && 2 * site.half_y <= kSmallest)
+          return fail(
+              "at {:.4f} deg tooth {} of {} touches on a corner without size: it overlaps by {:.3g} mm of an approach "
+              "of {:.3g} mm, and cells of {:.2g} mm, the smallest, see {:.3g} mm of it: a larger torque or softer "
+              "teeth are needed",
+              degrees(phi_), site.tooth, bodies_.rings[site.ring].ring, found.approach - first_of(site), found.approach,
+              std::max(c.dx, c.dy), std::max(0.0, found.approach - first_touch(w)));
+        site.x = site.first.x(), site.y = site.first.y();
+        site.half_x = std::max(site.half_x / kCloser, kSmallest / 2);
+        site.half_y = std::max(site.half_y / kCloser, kSmallest / 2);
+        fill(w, c.columns, c.rows);
+        changed = true;
+      } else if (drawn_together(w, pressure, only_rim)) {
+        changed = true;
+      }
     }
     return changed;
+  }
+  /// One window around what presses in it. False: it fits already, or nothing presses.
+  bool drawn_together(ToothWindow& w, const double* pressure, bool only_rim) {
+    const CellWindow& c = w.cells;
+    CellSite& site = w.site;
+    int from_x = c.columns, to_x = -1, from_y = c.rows, to_y = -1;
+    bool rim = false;
+    for (int row = 0; row < c.rows; ++row)
+      for (int column = 0; column < c.columns; ++column) {
+        if (!(pressure[row * c.columns + column] > 0)) continue;
+        from_x = std::min(from_x, column), to_x = std::max(to_x, column);
+        from_y = std::min(from_y, row), to_y = std::max(to_y, row);
+        rim |= column == 0 || column == c.columns - 1 || row == 0 || row == c.rows - 1;
+      }
+    if (to_x < 0) return false;
+    const double wide = std::max((to_x - from_x + 1) * c.dx, kSmallest),
+                 high = std::max((to_y - from_y + 1) * c.dy, kSmallest);
+    if (!rim && (only_rim || (2 * site.half_x < kLoose * wide && 2 * site.half_y < kLoose * high))) return false;
+    site.x += (from_x + to_x + 1) * c.dx / 2 - site.half_x, site.y += (from_y + to_y + 1) * c.dy / 2 - site.half_y;
+    const double grow = rim ? 2 * kMargin : kMargin;
+    site.half_x = std::max(grow * wide / 2, site.half_x / kCloser),
+    site.half_y = std::max(grow * high / 2, site.half_y / kCloser);
+    fill(w, c.columns, c.rows);
+    return true;
   }
 
   /// The approach at which the first cell of a window touches.
@@ -261,6 +304,10 @@ class Cells {
     for (std::size_t k = 0; k < w.cells.size(); ++k)
       least = std::min(least, (w.cells.gap[k] - w.axial_of(k) * shift_) / w.cells.lever_of(k));
     return least;
+  }
+  /// The approach at which its flanks touch first, as far as that is known beside the cells.
+  [[nodiscard]] double first_of(const CellSite& site) const {
+    return (site.first_gap + site.normal.dot(bodies_.pinion_axis) * shift_) / site.first_lever;
   }
   /// Gaps as they are when the bodies have approached by so much.
   static void count_from(double approach, CellWindow& c) {

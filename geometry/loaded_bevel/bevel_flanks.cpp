@@ -17,10 +17,13 @@ using loaded::CellSite;
 
 constexpr int kColumns = 17, kRows = 9;  // of the grid on which teeth are looked at
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kBend = 0.02;    // of the module: step for relative curvatures
-constexpr double kFlat = 1e-6;    // 1/mm: less bent flanks count as so bent
-constexpr double kAtEdge = 1e-9;  // of the cone distance
-constexpr double kMargin = 1.02;  // of the first rectangle around the flank
+constexpr double kBend = 0.02;      // of the module: step for relative curvatures
+constexpr double kFlat = 1e-6;      // 1/mm: less bent flanks count as so bent
+constexpr double kAtEdge = 1e-9;    // of the cone distance
+constexpr double kMargin = 1.02;    // of the first rectangle around the flank
+constexpr double kOnEdge = 1e-9;    // mm: places that slide along an edge lie on it
+constexpr int kSlides = 26;         // halvings of the steps along edges
+constexpr double kEarlier = 1e-11;  // rad: a place that is met less earlier is no better
 
 }  // namespace
 
@@ -111,13 +114,64 @@ BevelFlanks::Tooth BevelFlanks::look_at(int half, int tooth) const {
   return t;
 }
 
+std::optional<double> BevelFlanks::turned_within(const Tooth& t, Vec2& place, BevelInverse& start) const {
+  const contact::BevelPair& pair = pair_.pair;
+  const auto half = static_cast<std::size_t>(t.half);
+  const bevel_gear::BevelHalf &own = pair.wheel().halves()[half], &mate = pair.pinion().halves()[half];
+  const double phi_2 = turn_of_wheel(t.tooth);
+  const auto on_pinion = [&](const Vec2& at) -> std::optional<std::pair<contact::BevelPlace, Vec2>> {
+    const auto on_wheel = pair.wheel_place(t.half, pair_.sigma, at.x(), at.y());
+    if (!on_wheel || on_wheel->p < own.wall(pair_.sigma).cutter.p_B) return std::nullopt;
+    const auto q = pair.on_pinion(on_wheel->point, phi_2);
+    return std::pair(*on_wheel, Vec2(q.ell, q.height));
+  };
+  constexpr double kWay = 1e-4;  // mm: step of the derivatives
+  for (int round = 0; round < 10; ++round) {
+    place = Vec2(std::clamp(place.x(), own.ell_from, own.ell_to), std::min(place.y(), pair.highest()));
+    const auto here = on_pinion(place);
+    if (!here) return std::nullopt;
+    const Vec2& q = here->second;
+    const Vec2 back(std::clamp(q.x(), mate.ell_from, mate.ell_to) - q.x(),
+                    std::min(q.y(), pair.pinion().parameters().addendum_mm) - q.y());
+    if (back.norm() < kOnEdge) {
+      const auto met = pair.touch(t.half, pair_.sigma, here->first.point, phi_2, start);
+      if (!met) return std::nullopt;
+      return turned(t.tooth, *met);
+    }
+    const auto along = on_pinion(place - Vec2(kWay, 0)), up = on_pinion(place - Vec2(0, kWay));
+    if (!along || !up) return std::nullopt;
+    Eigen::Matrix2d J;
+    J.col(0) = (q - along->second) / kWay, J.col(1) = (q - up->second) / kWay;
+    const Vec2 step = J.inverse() * back;
+    if (!step.allFinite() || step.norm() > pair.wheel().parameters().outer_transverse_module_mm) return std::nullopt;
+    place += step;
+  }
+  return std::nullopt;
+}
+
+/// Down from the best place of the grid. Edges of both flanks lie askew in it, so steps that leave a flank slide along
+/// its edge: what touches first is mostly a corner of such edges.
 void BevelFlanks::refine(Tooth& t) const {
   const bevel_gear::BevelHalf& own = pair_.pair.wheel().halves()[static_cast<std::size_t>(t.half)];
-  t.least = pair_.pair
-                .downhill(t.half, pair_.sigma, turn_of_wheel(t.tooth), {t.least, t.ell, t.height},
-                          (own.ell_to - own.ell_from) / (kColumns - 1),
-                          (pair_.pair.highest() - pair_.pair.lowest(t.half)) / (kRows - 1))
-                .error;
+  Vec2 step((own.ell_to - own.ell_from) / (kColumns - 1),
+            (pair_.pair.highest() - pair_.pair.lowest(t.half)) / (kRows - 1)),
+      best(t.ell, t.height);
+  BevelInverse start;
+  for (int n = 0; n < kSlides;) {
+    bool moved = false;
+    const Vec2 centre = best;
+    for (int i = -1; i <= 1; ++i)
+      for (int j = -1; j <= 1; ++j) {
+        if (i == 0 && j == 0) continue;
+        Vec2 place = centre + Vec2(i * step.x(), j * step.y());
+        const auto here = turned_within(t, place, start);
+        if (here && *here < t.least - kEarlier) t.least = *here, best = place, moved = true;
+      }
+    // On along what is found, by steps as long as at the beginning again.
+    if (!moved) step /= 2, ++n;
+    else if (n > 0) step *= 2, --n;
+  }
+  t.ell = best.x(), t.height = best.y();
 }
 
 std::optional<BevelFlanks::WheelPlace> BevelFlanks::above(const CellSite& site, int half, const Vec2& at,
@@ -201,6 +255,13 @@ void BevelFlanks::add(const Tooth& tooth) {
                    [&](std::size_t a, std::size_t b) { return tooth.turned[a] < tooth.turned[b]; });
   for (const std::size_t k : order)
     if (auto site = site_at(tooth, tooth.grid[k])) {
+      if (const auto first = pair_.pair.wheel_place(tooth.half, pair_.sigma, tooth.ell, tooth.height)) {
+        const WheelPlace at = wheel_place(tooth.half, tooth.tooth, first->beta, first->p);
+        const Vec3 off = at.point - site->point;
+        site->first = Vec2(off.dot(site->across), off.dot(site->along));
+        site->first_gap = (tooth.least - first_) * at.lever_1;
+        site->first_lever = (pair_.options.torque_on_pinion ? at.lever_1 : at.lever_2) / pair_.lever;
+      }
       sites_.push_back(*site);
       middles_.push_back(tooth.grid[k]);
       return;

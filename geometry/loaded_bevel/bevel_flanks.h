@@ -44,6 +44,10 @@ class BevelFlanks final : public loaded::CellFlanks {
   [[nodiscard]] double turned(int tooth, const contact::BevelTouch& touch) const;
   [[nodiscard]] Tooth look_at(int half, int tooth) const;
   void refine(Tooth& tooth) const;  ///< its least between the places of the grid
+  /// sigma times the turn of the pinion beyond the exact ratio where it meets the place (ell, height) of the wheel; a
+  /// place beyond an edge of either flank moves onto it first. Empty: there is none.
+  [[nodiscard]] std::optional<double> turned_within(const Tooth& tooth, Vec2& place,
+                                                    bevel_gear::BevelInverse& start) const;
   /// The place above a point (x, y) of a site's plane, by Newton; empty: the wall does not reach it.
   [[nodiscard]] std::optional<WheelPlace> above(const loaded::CellSite& site, int half, const Vec2& at,
                                                 const WheelPlace& near) const;

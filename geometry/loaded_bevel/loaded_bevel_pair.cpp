@@ -64,12 +64,15 @@ Result<LoadedBevelPair> make_loaded_bevel_pair(const BevelGear& pinion, const Be
 }
 
 Result<LoadedPosition> loaded_position(const LoadedBevelPair& pair, const loaded::Load& load, double phi_1) {
+  if (!(load.torque_nmm > 0) || !std::isfinite(load.torque_nmm))
+    return fail("torque = {:g} N m on the {} is not above 0", load.torque_nmm / 1000,
+                pair.options.torque_on_pinion ? "pinion" : "wheel");
   auto found = loaded::cell_position(BevelFlanks(pair, phi_1), load, phi_1);
   if (found && !(found->approach_mm < kFarthestGap))
     return fail(
-        "under {:g} N m the flanks approach by {:.4g} mm: beyond {:g} mm, where linear theory and the teeth "
-        "that are looked at have ended",
-        load.torque_nmm / 1000, found->approach_mm, kFarthestGap);
+        "at {:.4f} deg under {:g} N m the flanks approach by {:.4g} mm: beyond {:g} mm, where linear theory and the "
+        "teeth that are looked at have ended",
+        degrees(phi_1), load.torque_nmm / 1000, found->approach_mm, kFarthestGap);
   return found;
 }
 

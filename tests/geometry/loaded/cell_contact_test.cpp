@@ -49,6 +49,49 @@ TEST(CellContact, RectangleIsItsIntegral) {
   }
 }
 
+/// Windows of cells of any size, gaps large beside what the force presses: few cells carry, the search lets go all
+/// others. Against active sets on the dense matrix.
+TEST(CellContact, StiffWindowsOfUnequalCellsShareLikeBruteForce) {
+  std::mt19937 random(20);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int trial = 0; trial < 300; ++trial) {
+    CellProblem problem;
+    problem.compliance = kCompliance * std::pow(10.0, -4 * unit(random));
+    problem.force = 30;
+    for (int w = 0; w < 2; ++w) {
+      const double side = std::pow(10.0, -3 * unit(random)), tilt = 0.02 * unit(random);
+      CellWindow window{6, 5, side, side * (0.5 + unit(random)), {}};
+      for (int k = 0; k < 30; ++k) window.gap.push_back(tilt * window.dx * (k % 6) + 1e-3 * unit(random));
+      problem.windows.push_back(window);
+    }
+    loaded::ContactProblem dense;
+    constexpr Eigen::Index kCells = 60;
+    dense.compliance = Eigen::MatrixXd::Zero(kCells, kCells), dense.gap.resize(kCells);
+    dense.approach = Eigen::MatrixXd::Ones(kCells, 1), dense.support = Eigen::MatrixXd::Zero(1, 1);
+    dense.load = Eigen::VectorXd::Constant(1, problem.force);
+    for (Eigen::Index i = 0; i < kCells; ++i) {
+      const auto& w = problem.windows[static_cast<std::size_t>(i / 30)];
+      dense.gap(i) = w.gap[static_cast<std::size_t>(i % 30)];
+      for (Eigen::Index k = i / 30 * 30; k < i / 30 * 30 + 30; ++k)
+        dense.compliance(i, k) =
+            problem.compliance / (w.dx * w.dy) *
+            loaded::rectangle_influence(double(i % 6 - k % 6) * w.dx, double(i % 30 / 6 - k % 30 / 6) * w.dy, w.dx / 2,
+                                        w.dy / 2);
+    }
+    const auto exact = loaded::share_load(dense);
+    ASSERT_TRUE(exact) << exact.error().message;
+    const auto found = loaded::press_cells(problem);
+    ASSERT_TRUE(found) << trial << ": " << found.error().message;
+    EXPECT_LT(found->residual, 1e-6) << trial;
+    EXPECT_NEAR(found->approach, exact->motion(0), 1e-5 * exact->motion(0)) << trial;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(kCells); ++i) {
+      const auto& w = problem.windows[i / 30];
+      EXPECT_NEAR(found->pressure[i] * w.dx * w.dy, exact->force(static_cast<Eigen::Index>(i)), 1e-4 * problem.force)
+          << trial << " " << i;
+    }
+  }
+}
+
 TEST(CellContact, IsTheEllipseOfHertz) {
   // Worked values: pressure and approach of a sphere of 10 mm, and of two ellipses.
   const struct {

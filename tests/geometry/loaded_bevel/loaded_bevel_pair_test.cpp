@@ -285,7 +285,7 @@ TEST(LoadedBevelPair, Refusals) {
   for (const double torque : {0.0, -5.0, std::nan("")}) {
     const auto none = loaded_bevel::loaded_position(pair, held(torque), 0);
     ASSERT_FALSE(none) << torque;
-    EXPECT_NE(none.error().message.find("a force above 0"), std::string::npos) << none.error().message;
+    EXPECT_NE(none.error().message.find("N m on the wheel is not above 0"), std::string::npos) << none.error().message;
   }
   options.pinion.bricks.rim_mm = 200;
   const auto& [pinion, wheel] = single_gears();
