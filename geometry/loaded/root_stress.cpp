@@ -10,32 +10,39 @@ namespace toothpath::loaded {
 namespace {
 
 /// Forces of one position on the stations of a body, by tooth.
-std::map<int, Eigen::VectorXd> station_forces(const ToothBody& body, int ring, bool on_gear,
-                                              const LoadedPosition& position) {
+std::map<int, Eigen::VectorXd> station_forces(const RootBody& of, int ring, const LoadedPosition& position) {
+  const ToothBody& body = of.bricks;
   std::map<int, Eigen::VectorXd> forces;
   for (const PressedSegment& s : position.segments) {
     if (s.place.ring != ring || !(s.force > 0)) continue;
     auto [at, fresh] = forces.try_emplace(s.place.tooth);
     if (fresh) at->second = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(body.sector.stations.size()));
-    const ToothBody::Weights on =
-        on_gear ? body.weights(s.place.r, s.place.nearest.z()) : body.weights(s.place.Z, s.place.R);
+    const ToothBody::Weights on = of.on_gear ? body.weights(s.place.r, s.place.z) : body.weights(s.place.Z, s.place.R);
     for (std::size_t k = 0; k < 4; ++k) at->second(on.station[k]) += on.weight[k] * s.force;
   }
   return forces;
 }
 
 /// Two meshes. A fillet's stress dies away within its radius: bricks must be thin under it (grading 2), more than many.
-constexpr int kMeshes = 2, kAcross[kMeshes] = {4, 6}, kFillet[kMeshes] = {6, 6}, kFlank = 6, kFace = 8;
+constexpr int kMeshes = 2, kFillet = 6, kFlank = 6, kFace = 8;
 constexpr double kGrading = 2;
 
-elastic::SectorPlan plan_of(int mesh, double rim_mm) {
+elastic::SectorPlan plan_of(int across, double rim_mm) {
   elastic::SectorPlan plan;
-  plan.across = kAcross[mesh], plan.fillet = kFillet[mesh];
+  plan.across = across, plan.fillet = kFillet;
   plan.flank = kFlank, plan.face = kFace, plan.grading = kGrading, plan.rim_mm = rim_mm;
   return plan;
 }
 
 }  // namespace
+
+Result<RootBody> with_stress(RootBody body, const BodyPlan& of) {
+  const auto fields = elastic::tooth_fields(body.bricks.sector, of.nu, of.teeth);
+  if (!fields) return fields.error();
+  body.nodes = elastic::fillet_nodes(body.bricks.sector);
+  body.stress = elastic::hat_stress(body.bricks.sector, of.nu, *fields, body.nodes);
+  return body;
+}
 
 Result<RootBody> root_body(const LoadedPair& pair, const PairRing& ring, bool on_gear,
                            const elastic::SectorPlan& plan) {
@@ -47,50 +54,45 @@ Result<RootBody> root_body(const LoadedPair& pair, const PairRing& ring, bool on
               : pinion_bricks(pinion, pinion_profile(pinion, ring.surface.shaper.h_f, pair.options.pinion_fillet_mm),
                               pair.side, b.least_Z, b.most_Z, plan);
   if (!bricks) return bricks.error();
-  const auto fields = elastic::tooth_fields(bricks->sector, of.nu, of.teeth);
-  if (!fields) return fields.error();
-  RootBody out{std::move(*bricks), {}, {}};
-  out.nodes = elastic::fillet_nodes(out.bricks.sector);
-  out.stress = elastic::hat_stress(out.bricks.sector, of.nu, *fields, out.nodes);
-  return out;
+  return with_stress({std::move(*bricks), on_gear, 1,
+                      [on_gear](const Vec3& p) {
+                        const double radius = std::hypot(p.x(), p.y());
+                        return on_gear ? Vec2(radius, p.z()) : Vec2(p.z(), radius);
+                      }},
+                     of);
 }
 
-RootPlace most_stressed(const RootBody& body, int ring, bool on_gear, const LoadedCycle& cycle) {
+RootPlace most_stressed(const RootBody& body, int ring, const LoadedCycle& cycle) {
   RootPlace most;
   most.stress = -1e300;
   for (std::size_t k = 0; k < cycle.positions.size(); ++k) {
-    const auto forces = station_forces(body.bricks, ring, on_gear, cycle.positions[k]);
+    const auto forces = station_forces(body, ring, cycle.positions[k]);
     for (const auto& [tooth, own] : forces) {
       Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(6 * body.nodes.size()));
       for (const auto& [loaded, force] : forces) {
-        const int offset = tooth - loaded + body.stress.reach;
+        const int offset = (tooth - loaded) * body.next + body.stress.reach;
         if (offset >= 0 && offset <= 2 * body.stress.reach)
           sum += body.stress.at_offset[static_cast<std::size_t>(offset)] * force;
       }
       for (std::size_t n = 0; n < body.nodes.size(); ++n) {
         const double stress = elastic::largest_principal(sum.segment<6>(static_cast<Eigen::Index>(6 * n)));
         if (!(stress > most.stress)) continue;
-        const Vec3& p = body.bricks.sector.nodes[static_cast<std::size_t>(body.nodes[n])];
-        const double radius = std::hypot(p.x(), p.y());
-        most = {stress, static_cast<int>(k), ring, tooth, on_gear ? radius : p.z(), on_gear ? p.z() : radius};
+        const Vec2 at = body.place(body.bricks.sector.nodes[static_cast<std::size_t>(body.nodes[n])]);
+        most = {stress, static_cast<int>(k), ring, tooth, at.x(), at.y()};
       }
     }
   }
   return most;
 }
 
-Result<RootStress> root_stress(const LoadedPair& pair, const LoadedCycle& cycle) {
-  for (const PairRing& ring : pair.rings)
-    if (const double rho = ring.surface.shaper.rho; !(rho > 0))
-      return fail("shaper_tip_radius = {:g} mm is not above 0: a fillet without a radius has no finite stress", rho);
-  const std::size_t bodies = 2 * pair.rings.size();
+Result<RootStress> root_stress(const RootBodies& of, const LoadedCycle& cycle) {
+  const std::size_t bodies = 2 * of.rings.size();
   std::vector<std::optional<Result<RootPlace>>> found(kMeshes * bodies);
   tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t n) {
-    const PairRing& ring = pair.rings[n / 2 % pair.rings.size()];
+    const std::size_t ring = n / 2 % of.rings.size();
     const bool on_gear = n % 2 == 0;
-    const BodyPlan& of = on_gear ? pair.options.gear : pair.options.pinion;
-    const auto body = root_body(pair, ring, on_gear, plan_of(static_cast<int>(n / bodies), of.bricks.rim_mm));
-    if (body) found[n] = most_stressed(*body, ring.ring, on_gear, cycle);
+    const auto body = of.make(ring, on_gear, plan_of(of.across[n / bodies], of.rim_mm[n % 2]));
+    if (body) found[n] = most_stressed(*body, of.rings[ring], cycle);
     else found[n] = body.error();
   });
   RootStress out;
@@ -105,6 +107,20 @@ Result<RootStress> root_stress(const LoadedPair& pair, const LoadedCycle& cycle)
     (on_gear ? out.gear_error : out.pinion_error) = std::abs(most[1].stress - most[0].stress);
   }
   return out;
+}
+
+Result<RootStress> root_stress(const LoadedPair& pair, const LoadedCycle& cycle) {
+  RootBodies of;
+  for (const PairRing& ring : pair.rings) {
+    if (const double rho = ring.surface.shaper.rho; !(rho > 0))
+      return fail("shaper_tip_radius = {:g} mm is not above 0: a fillet without a radius has no finite stress", rho);
+    of.rings.push_back(ring.ring);
+  }
+  of.rim_mm = {pair.options.gear.bricks.rim_mm, pair.options.pinion.bricks.rim_mm};
+  of.make = [&](std::size_t ring, bool on_gear, const elastic::SectorPlan& plan) {
+    return root_body(pair, pair.rings[ring], on_gear, plan);
+  };
+  return root_stress(of, cycle);
 }
 
 }  // namespace toothpath::loaded

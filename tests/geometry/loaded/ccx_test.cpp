@@ -182,8 +182,11 @@ TEST(CalculiX, AgreesOnTheStress) {
   const auto profile = loaded::pinion_profile(pinion, ring.surface.shaper.h_f, 1.2);
   const auto on_gear = loaded::gear_bricks(ring.surface, 1, ring.zone.inner_radius_mm, ring.zone.outer_radius_mm, plan);
   const auto on_pinion = loaded::pinion_bricks(pinion, profile, 1, 551, 584, plan);
-  for (const auto* body : {&on_gear, &on_pinion}) {
-    ASSERT_TRUE(*body);
+  plan.rim_mm = 20;
+  const auto on_wheel = loaded_bevel::bevel_bricks(herringbone_gears().second, 1, 1, plan),
+             on_bevel_pinion = loaded_bevel::bevel_bricks(herringbone_gears().first, 0, -1, plan);
+  for (const auto* body : {&on_gear, &on_pinion, &on_wheel, &on_bevel_pinion}) {
+    ASSERT_TRUE(*body) << body->error().message;
     const elastic::Sector& s = (*body)->sector;
     const auto fields = elastic::tooth_fields(s, 0.3, 3);
     ASSERT_TRUE(fields);
