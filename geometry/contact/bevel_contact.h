@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,11 @@ struct PinionChange {
   std::array<double, 2> equivalent_radius{};   ///< share added to r_v of the mill's profile: its hollow becomes flatter
   std::array<double, 2> spiral_angle_rad{};  ///< added to beta_e of the trace that the wall follows; theta(R_ref) stays
 };
+
+/// What stands on the drawn walls of both gears together, along their normals, mm: > 0 material left, < 0 missing. Of
+/// wall sigma of a half, at a place of the wheel and the one of the pinion that meets it. Empty: nothing.
+using BevelLeft = std::function<double(int half, int sigma, const bevel_gear::ConePoint& on_wheel,
+                                       const bevel_gear::ConePoint& on_pinion)>;
 
 /// A place on wall sigma of one half of a gear.
 struct BevelPlace {
@@ -61,7 +67,8 @@ class BevelPair {
   /// Refused: numbers of teeth that do not fit the pitch angles, cone distances R_0 that differ by more than 2 %, other
   /// halves, equal hands.
   [[nodiscard]] static Result<BevelPair> make(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel,
-                                              const BevelAssembly& assembly = {}, const PinionChange& change = {});
+                                              const BevelAssembly& assembly = {}, const PinionChange& change = {},
+                                              BevelLeft left = {});
 
   /// Turn of the pinion at which its wall sigma passes through a point of the wheel [wheel's blank frame] when the
   /// wheel stands at phi_2. Positive turns are right-handed about each gear's own axis; phi_1 = phi_2 = 0: a pinion
@@ -113,12 +120,13 @@ class BevelPair {
 
  private:
   BevelPair() = default;
-  [[nodiscard]] std::optional<BevelTouch> touch_of(const bevel_gear::BevelHalf& half, int sigma,
+  [[nodiscard]] std::optional<BevelTouch> touch_of(int half, int sigma, const Vec3& point,
                                                    const bevel_gear::ConePoint& q, bool on_flank,
                                                    bevel_gear::BevelInverse& start) const;
   [[nodiscard]] bool within_edges(const bevel_gear::BevelHalf& half, const bevel_gear::ConePoint& q) const;
   const bevel_gear::BevelGear *pinion_ = nullptr, *wheel_ = nullptr;
   std::vector<bevel_gear::BevelHalf> pinion_halves_;  ///< with the change
+  BevelLeft left_;
   double ratio_ = 1;
   Mat3 placed_ = Mat3::Identity();
   Vec3 shift_ = Vec3::Zero();

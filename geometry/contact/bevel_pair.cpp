@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/base/angle.h"
 
@@ -31,7 +32,7 @@ void change_wall(bevel_gear::BevelWall<double>& wall, const bevel_gear::BevelGea
 }  // namespace
 
 Result<BevelPair> BevelPair::make(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel,
-                                  const BevelAssembly& assembly, const PinionChange& change) {
+                                  const BevelAssembly& assembly, const PinionChange& change, BevelLeft left) {
   const auto &p = pinion.parameters(), &w = wheel.parameters();
   const double ratio = double(w.teeth) / p.teeth;
   if (std::abs(wheel.sin_delta() / pinion.sin_delta() / ratio - 1) > 1e-9)
@@ -54,6 +55,7 @@ Result<BevelPair> BevelPair::make(const bevel_gear::BevelGear& pinion, const bev
   for (bevel_gear::BevelHalf& half : pair.pinion_halves_)
     for (bevel_gear::BevelWall<double>& wall : half.walls) change_wall(wall, pinion, change);
   pair.ratio_ = ratio;
+  pair.left_ = std::move(left);
   // Common pitch line g, normal m from the pinion into the wheel, t = g x m; the fixed frame is the pinion's blank
   // frame at phi_1 = 0.
   const double s1 = pinion.sin_delta(), c1 = pinion.cos_delta(), s2 = wheel.sin_delta(), c2 = wheel.cos_delta();
@@ -80,10 +82,9 @@ bool BevelPair::within_edges(const bevel_gear::BevelHalf& half, const bevel_gear
            q.height > pinion_->parameters().addendum_mm + edge);
 }
 
-std::optional<BevelTouch> BevelPair::touch_of(const bevel_gear::BevelHalf& half, int sigma,
-                                              const bevel_gear::ConePoint& q, bool on_flank,
-                                              bevel_gear::BevelInverse& start) const {
-  const bevel_gear::BevelWall<double>& wall = half.wall(sigma);
+std::optional<BevelTouch> BevelPair::touch_of(int half, int sigma, const Vec3& point, const bevel_gear::ConePoint& q,
+                                              bool on_flank, bevel_gear::BevelInverse& start) const {
+  const bevel_gear::BevelWall<double>& wall = pinion_halves_[static_cast<std::size_t>(half)].wall(sigma);
   auto found = start.iterations > 0 ? bevel_gear::bevel_inverse(wall, q.ell, q.height, start)
                                     : bevel_gear::bevel_inverse(wall, q.ell, q.height);
   if (!found && start.iterations > 0) found = bevel_gear::bevel_inverse(wall, q.ell, q.height);
@@ -91,7 +92,12 @@ std::optional<BevelTouch> BevelPair::touch_of(const bevel_gear::BevelHalf& half,
   start = *found;
   // Pinion tooth between its spaces -1 and 0, turned by half a pitch to azimuth 0: wall L of space 0, wall U of space
   // -1.
-  return BevelTouch{wrapped(q.azimuth - found->azimuth - sigma * pinion_->pitch() / 2), q.ell, q.height, on_flank};
+  double turn = q.azimuth - found->azimuth - sigma * pinion_->pitch() / 2;
+  // What stands on the walls is met earlier.
+  if (left_)
+    turn -= sigma * left_(half, sigma, bevel_gear::cone_point(point, wheel_->sin_delta(), wheel_->cos_delta()), q) /
+            pinion_lever(half, sigma, *found);
+  return BevelTouch{wrapped(turn), q.ell, q.height, on_flank};
 }
 
 std::optional<double> BevelPair::turn_at(int half, int sigma, const Vec3& point, double phi_2,
@@ -99,7 +105,7 @@ std::optional<double> BevelPair::turn_at(int half, int sigma, const Vec3& point,
   const bevel_gear::BevelHalf& own = pinion_halves_[static_cast<std::size_t>(half)];
   const bevel_gear::ConePoint q = on_pinion(point, phi_2);
   if (!within_edges(own, q)) return std::nullopt;
-  const auto found = touch_of(own, sigma, q, true, start);
+  const auto found = touch_of(half, sigma, point, q, true, start);
   if (!found) return std::nullopt;
   return found->turn;
 }
@@ -108,7 +114,7 @@ std::optional<BevelTouch> BevelPair::touch(int half, int sigma, const Vec3& poin
                                            bevel_gear::BevelInverse& start) const {
   const bevel_gear::BevelHalf& own = pinion_halves_[static_cast<std::size_t>(half)];
   const bevel_gear::ConePoint q = on_pinion(point, phi_2);
-  return touch_of(own, sigma, q, within_edges(own, q), start);
+  return touch_of(half, sigma, point, q, within_edges(own, q), start);
 }
 
 std::optional<double> BevelPair::error_at(int half, int sigma, const Vec3& point, double phi_2,

@@ -35,7 +35,7 @@ double axial_of(const contact::BevelPair& pair, int sigma) {
 
 Result<LoadedBevelPair> make_loaded_bevel_pair(const BevelGear& pinion, const BevelGear& wheel, int sigma,
                                                const BevelPairOptions& options) {
-  auto rolled = contact::BevelPair::make(pinion, wheel, options.moved);
+  auto rolled = contact::BevelPair::make(pinion, wheel, options.moved, {}, options.left);
   if (!rolled) return rolled.error();
   LoadedBevelPair out{std::move(*rolled), sigma, options, 0, 0, 0, 0, {}};
   out.modulus = loaded::contact_modulus(options.wheel.E, options.wheel.nu, options.pinion.E, options.pinion.nu);
@@ -61,6 +61,14 @@ Result<LoadedBevelPair> make_loaded_bevel_pair(const BevelGear& pinion, const Be
   for (const auto& status : done)
     if (!status) return status.error();
   return out;
+}
+
+Result<LoadedBevelPair> with_left(LoadedBevelPair pair, const contact::BevelLeft& left) {
+  pair.options.left = left;
+  auto rolled = contact::BevelPair::make(pair.pair.pinion(), pair.pair.wheel(), pair.options.moved, {}, left);
+  if (!rolled) return rolled.error();
+  pair.pair = std::move(*rolled);
+  return pair;
 }
 
 Result<LoadedPosition> loaded_position(const LoadedBevelPair& pair, const loaded::Load& load, double phi_1) {

@@ -13,6 +13,7 @@ namespace toothpath::loaded_bevel {
 struct BevelPairOptions {
   loaded::BodyPlan wheel, pinion;
   contact::BevelAssembly moved;
+  contact::BevelLeft left{};      ///< on the drawn walls, as they were cut or measured; the bodies are as drawn
   bool torque_on_pinion = false;  ///< the torque of Load is the pinion's, not the wheel's
   double edge_radius_mm = 0;      ///< rounding of the edges of the teeth; 0: not stated
 };
@@ -39,6 +40,9 @@ struct LoadedBevelPair {
 [[nodiscard]] Result<LoadedBevelPair> make_loaded_bevel_pair(const bevel_gear::BevelGear& pinion,
                                                              const bevel_gear::BevelGear& wheel, int sigma,
                                                              const BevelPairOptions& options);
+
+/// The same bodies with other material on the drawn walls. Refused: as BevelPair::make.
+[[nodiscard]] Result<LoadedBevelPair> with_left(LoadedBevelPair pair, const contact::BevelLeft& left);
 
 /// @param load   its torque is that of the gear that the options name
 /// @param phi_1  turn of the pinion at the exact ratio; a pitch is 2 pi/z_1

@@ -255,6 +255,41 @@ TEST(LoadedBevelPair, TipReliefTakesTheLoadOffTheEdges) {
   EXPECT_LT(edge[1], 0.5 * edge[0]);
 }
 
+/// What a modification takes off a wall at a place, as a deviation that was measured there.
+double taken_off(const bevel_gear::BevelGear& plain, const bevel_gear::BevelGear& modified, int half, int sigma,
+                 const bevel_gear::ConePoint& at) {
+  const auto h = static_cast<std::size_t>(half);
+  const auto& wall = plain.halves()[h].wall(sigma);
+  const auto a = bevel_gear::bevel_inverse(wall, at.ell, at.height),
+             b = bevel_gear::bevel_inverse(modified.halves()[h].wall(sigma), at.ell, at.height);
+  if (!a || !b) return 0;
+  const auto f = wall.point(a->beta, a->p);
+  return wrapped(b->azimuth - a->azimuth) * (f.p.x() * f.n.y() - f.p.y() * f.n.x());
+}
+
+TEST(LoadedBevelPair, WhatIsLeftOnTheWallsIsAsIfTheyWereDrawnSo) {
+  const auto &plain = single_gears(), &relieved = relieved_gears(0.06);
+  for (const int sigma : {1, -1}) {
+    auto options = coarse_bodies();
+    const auto drawn = pair_of(relieved, sigma, options), ideal = pair_of(plain, sigma, options);
+    const auto left = [&](int half, int side, const bevel_gear::ConePoint& on_wheel,
+                          const bevel_gear::ConePoint& on_pinion) {
+      return taken_off(plain.second, relieved.second, half, side, on_wheel) +
+             taken_off(plain.first, relieved.first, half, side, on_pinion);
+    };
+    EXPECT_LT(left(0, sigma, {ideal.pair.wheel().R_m(), 4, 0}, {ideal.pair.wheel().R_m(), -4, 0}), -0.02);
+    const auto measured = loaded_bevel::with_left(ideal, left);
+    ASSERT_TRUE(measured) << measured.error().message;
+    for (const double phase : {0.0, 0.4, 0.8}) {
+      const auto d = position_of(drawn, held(200), phase), m = position_of(*measured, held(200), phase),
+                 i = position_of(ideal, held(200), phase);
+      EXPECT_NEAR(m.approach_mm, d.approach_mm, 0.01 * d.approach_mm) << sigma << " " << phase;
+      EXPECT_NEAR(m.axial_n, d.axial_n, 0.02 * std::abs(d.axial_n)) << sigma << " " << phase;
+      EXPECT_GT(std::abs(i.approach_mm - d.approach_mm) + std::abs(i.end_line_load - d.end_line_load), 1e-4);
+    }
+  }
+}
+
 TEST(LoadedBevelPair, MisalignedPairsMoveTheirLoad) {
   auto options = coarse_bodies();
   const auto place_of = [&](const contact::BevelAssembly& moved) {
