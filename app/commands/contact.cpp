@@ -135,7 +135,7 @@ void add_contact(Commands& commands) {
         set.text("--write", request.write_file, "with --optimise: the job with what was found, a new file", "JOB.toml");
         set.flag("--as-cut", request.as_cut, "roll the surface that the job cuts, too");
         set.files("--measured", request.measured.files,
-                  "roll the surface that was measured, too: files as `correct` reads them");
+                  "roll the surface that was measured, too: files as `correct` reads them; bevel gears: grids");
         set.number("--ball-diameter", request.measured.ball_diameter_mm,
                    "the measured points are centres of a ball of this diameter, not places of the surface",
                    job::kBallDiameter);

@@ -350,19 +350,12 @@ ContactLoad read_contact_load(toml::TableReader& table, const Job& job) {
   load.segment_mm = table.optional_number("segment", {0.01, 100, " mm"});
   load.rim_mm = table.optional_number("rim", {0.01, 1000, " mm"});
   load.edge_radius_mm = table.optional_number("edge_radius", {1e-3, 10, " mm"}).value_or(load.edge_radius_mm);
-  if (const auto* gear = job.face_gear()) {
-    load.friction = table.optional_number("friction", {0, 1});
-    load.root_stress = table.boolean_or("root_stress", load.root_stress);
-    if (load.root_stress && !(gear->shaper_tip_radius_mm > 0))
-      table.refuse(
-          "root_stress",
-          "root_stress = true with shaper_tip_radius = {:g} mm: a fillet without a radius has no finite stress",
-          gear->shaper_tip_radius_mm);
-  } else {
-    for (const char* key : {"friction", "root_stress"})
-      if (table.misplaced(key))
-        table.refuse(key, "{} is computed for face gears and their pinions; this gear is {}", key, job.gear_type());
-  }
+  load.friction = table.optional_number("friction", {0, 1});
+  load.root_stress = table.boolean_or("root_stress", load.root_stress);
+  if (const auto* gear = job.face_gear(); gear != nullptr && load.root_stress && !(gear->shaper_tip_radius_mm > 0))
+    table.refuse("root_stress",
+                 "root_stress = true with shaper_tip_radius = {:g} mm: a fillet without a radius has no finite stress",
+                 gear->shaper_tip_radius_mm);
   table.finish();
   return load;
 }

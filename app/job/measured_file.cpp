@@ -42,7 +42,7 @@ bool parse(std::string_view text, T& value) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
-Result<Line> parse_line(std::string_view text, int number, const std::string& file) {
+Result<Line> parse_line(std::string_view text, int number, const std::string& file, bool walls) {
   Line line;
   line.number = number;
   std::size_t count = 0, begin = 0;
@@ -62,9 +62,12 @@ Result<Line> parse_line(std::string_view text, int number, const std::string& fi
         "zone", "flank", "row", "column", "x", "y", "z", "i", "j", "k", "deviation_um"};
     return kNames[k];
   };
+  if (walls && line.cell[1] != "L" && line.cell[1] != "U")
+    return at(file, number, line.column[1], "flank = \"{}\" must be L or U", line.cell[1]);
+  if (walls) line.side = line.cell[1] == "L" ? 1 : -1;
   std::array<int*, 4> whole = {&line.zone, &line.side, &line.row, &line.place};
   for (std::size_t k = 0; k < 4; ++k)
-    if (!parse(line.cell[k], *whole[k]) || (k != 1 && (*whole[k] < 0 || *whole[k] > 999)))
+    if (!(walls && k == 1) && (!parse(line.cell[k], *whole[k]) || (k != 1 && (*whole[k] < 0 || *whole[k] > 999))))
       return at(file, number, line.column[k], "{} = \"{}\" is no whole number from 0 to 999", names(k), line.cell[k]);
   if (line.side != 1 && line.side != -1)
     return at(file, number, line.column[1], "flank = {} must be 1 or -1", line.side);
@@ -129,6 +132,12 @@ std::optional<Diagnostic> check_sizes(const std::string& file, const std::vector
 }  // namespace
 
 Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file, const face_gear::FaceGear& gear) {
+  return parse_measured(text, file, {gear.rings().size(), false, [&](int rows, int columns) {
+                                       return inspection::inspection_grid(gear, {rows, columns});
+                                     }});
+}
+
+Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file, const GridOfGear& gear) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   std::vector<Line> lines;
   int number = 0;
@@ -143,7 +152,7 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
       continue;
     }
     if (row.empty()) continue;
-    auto line = parse_line(row, number, file);
+    auto line = parse_line(row, number, file, gear.walls);
     if (!line) return line.error();
     lines.push_back(*line);
   }
@@ -154,13 +163,12 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
     options.rows = std::max(options.rows, line.row + 1);
     options.columns = std::max(options.columns, line.place + 1);
   }
-  auto grid = inspection::inspection_grid(gear, options);
+  auto grid = gear.nominal(options.rows, options.columns);
   if (!grid) return at(file, lines.back().number, 0, "wrong grid: {}", grid.error().message);
   std::vector<const Line*> placed(grid->size(), nullptr);
   for (const Line& line : lines) {
-    const auto zones = gear.rings().size();
-    if (std::size_t(line.zone) >= zones)
-      return at(file, line.number, line.column[0], "zone = {}, the gear has zones 0 .. {}", line.zone, zones - 1);
+    if (std::size_t(line.zone) >= gear.zones)
+      return at(file, line.number, line.column[0], "zone = {}, the gear has zones 0 .. {}", line.zone, gear.zones - 1);
     const std::size_t k =
         ((std::size_t(line.zone) * 2 + (line.side > 0 ? 0 : 1)) * std::size_t(options.rows) + std::size_t(line.row)) *
             std::size_t(options.columns) +
@@ -260,6 +268,59 @@ Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal, const Mea
   for (auto& fit : fits) add(corrected.fit, std::move(fit));
   corrected.gear = nominal.corrected(corrected.fit.rings);
   return corrected;
+}
+
+namespace {
+
+/// Files that are all grids of one gear.
+Result<std::vector<MeasuredFlanks>> read_measured_grids(const MeasuredInput& measured, const GridOfGear& gear) {
+  std::vector<MeasuredFlanks> grids;
+  for (const auto& file : measured.files) {
+    const auto text = toml::read_input_file(file, kMostMeasuredBytes);
+    if (!text) return text.error();
+    if (!looks_like_grid(*text))
+      return at(file, 1, 0,
+                "files of points are put on face gears only; the grid of inspection.csv with a column "
+                "deviation_um is needed: \"{}\"",
+                kHeader);
+    if (measured.ball_diameter_mm)
+      return at(file, 1, 0, "an inspection grid holds deviations: a ball's diameter is for files of points");
+    auto grid = parse_measured(*text, file, gear);
+    if (!grid) return grid.error();
+    if (!grids.empty() && grid->points.size() != grids.front().points.size())
+      return at(file, 1, 0, "{} points, but {} has {}: all measurements need the same grid", grid->points.size(),
+                grids.front().file, grids.front().points.size());
+    grids.push_back(std::move(*grid));
+  }
+  return grids;
+}
+
+}  // namespace
+
+Result<std::vector<MeasuredField>> fit_measured(const MeasuredInput& measured, const GridOfGear& gear) {
+  const auto grids = read_measured_grids(measured, gear);
+  if (!grids) return grids.error();
+  const auto& points = grids->front().points;
+  std::vector<MeasuredField> out;
+  for (int zone = 0; zone < static_cast<int>(gear.zones); ++zone)
+    for (const int side : {1, -1}) {
+      // The field counts down the profile: its roll parameter is the height with the other sign.
+      std::vector<face_gear::FlankDeviation> flank;
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        if (points[k].zone != zone || points[k].side != side) continue;
+        double sum = 0;
+        for (const auto& grid : *grids) sum += grid.deviation_mm[k];
+        const Vec2 place = gear.place(points[k].p);
+        flank.push_back({points[k].row, points[k].column, -place.y(), place.x(), sum});
+      }
+      auto fit = face_gear::FlankCorrection::fit(flank, -gear.foot_mm);
+      if (!fit) return at(grids->front().file, 1, 0, "zone {}, side {:+}: {}", zone, side, fit.error().message);
+      const auto residual = fit->residual();
+      out.push_back({zone, side, residual, [field = std::move(*fit)](double face_mm, double height_mm) {
+                       return -field.at(-height_mm, face_mm).value;
+                     }});
+    }
+  return out;
 }
 
 std::string correction_json(const CorrectedGear& corrected) {

@@ -2,6 +2,7 @@
 // points stand in measured_points.h.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +34,19 @@ struct MeasuredFlanks {
 [[nodiscard]] Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file,
                                                     const face_gear::FaceGear& gear);
 
+/// The inspection grid of a gear that is no face gear, for its measured files.
+struct GridOfGear {
+  std::size_t zones = 0;
+  bool walls = false;  ///< flanks are called L and U (side +1 and -1), not 1 and -1
+  /// Points in the order zone, side (+1, -1), row, column; those of bevel gears without `theta` and `B`. Refused: fewer
+  /// rows or columns than the gear type needs.
+  std::function<Result<std::vector<inspection::InspectionPoint>>(int rows, int columns)> nominal;
+  std::function<Vec2(const Vec3&)> place{};  ///< of a point of a flank: along the face, height, mm
+  double foot_mm = 0;                        ///< height at which flanks begin, below all points of the grid
+};
+/// As above, of any gear type.
+[[nodiscard]] Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file,
+                                                    const GridOfGear& gear);
 /// The fit of one flank, for the report.
 struct FittedFlank {
   int zone = 0, side = 1;
@@ -57,6 +71,17 @@ struct MeasuredInput {
   std::vector<std::string> files;
   std::optional<double> ball_diameter_mm = {};  ///< points are the centres of a ball of that diameter
 };
+
+/// The deviation of one flank as measured files tell of it: their fit.
+struct MeasuredField {
+  int zone = 0, side = 1;
+  face_gear::CorrectionResidual residual;
+  std::function<double(double face_mm, double height_mm)> deviation_mm;  ///< > 0: material left
+};
+/// Reads files that are all grids of this gear, in the order of the cuts; their deviations add up and are fitted flank
+/// by flank. Refused: as `parse_measured`; a file that cannot be read (`file_access`); files of points, which are put
+/// on face gears only; a ball's diameter; grids of different size.
+[[nodiscard]] Result<std::vector<MeasuredField>> fit_measured(const MeasuredInput& measured, const GridOfGear& gear);
 
 /// A gear whose target answers measured files.
 struct CorrectedGear {

@@ -13,10 +13,12 @@ namespace toothpath::process {
 /// Flanks of one tooth with the deviation along the normal, and what it took to cut them.
 struct CutFlanks {
   struct Flank {
-    int zone = 0, side = 1;
+    int zone = 0, side = 1;              ///< side of a wall: +1 L, -1 U
     int rows = 0, columns = 0;           ///< rows along the profile
     std::vector<Vec3> nominal, normals;  ///< gear frame, out of the material
     std::vector<double> deviation_mm;    ///< > 0 material left
+    /// 0: no place of the flank, or none that the mill reaches; empty: all are.
+    std::vector<unsigned char> reached = {};
   };
   std::vector<Flank> flanks;
   std::string route;  ///< "milled" or "shaped"

@@ -113,8 +113,8 @@ struct ContactAsked {
   bool pinion_held = false;                    ///< along its axis, where it would float
   std::optional<int> positions;                ///< of the loaded pair over a pitch
   std::string ccx_dir;                         ///< where decks of CalculiX go; empty: none
-  bool as_cut = false;                         ///< face gears: the surface that the job's operations cut, too
-  job::MeasuredInput measured = {};            ///< face gears: or the one that was measured
+  bool as_cut = false;                         ///< the surface that the job's operations cut, too
+  job::MeasuredInput measured = {};            ///< or the one that was measured
   bool optimise = false;                       ///< seek crownings and reliefs for the box of misalignments
   std::string modify;                          ///< whose flanks they may take: a word of kModifiable; empty: any
   std::string write_file;                      ///< where the job with what was found goes; empty: nowhere

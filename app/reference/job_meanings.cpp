@@ -251,7 +251,7 @@ constexpr Meaning kJobMeanings[] = {
     {"contact.load.friction",
      "Coefficient of friction: what it could add to axial force and torque, beside results without friction."},
     {"contact.load.root_stress",
-     "The largest stress in the fillets of gear and pinion, too; needs a `shaper_tip_radius` above 0."},
+     "The largest stress in the fillets of gear and pinion, too; face gears need a `shaper_tip_radius` above 0."},
     {"load", "Load of the gear; only forces are computed from it."},
     {"load.torque", "Torque on the gear."},
 };

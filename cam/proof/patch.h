@@ -42,6 +42,11 @@ enum class Patch : std::uint8_t { flank_plus, fillet_plus, root, fillet_minus, f
   return patch == Patch::flank_plus ? 1 : patch == Patch::flank_minus ? -1 : 0;
 }
 
+/// +1 for wall L, -1 for wall U of a bevel gear; 0 for everything else.
+[[nodiscard]] constexpr int wall_side(Patch patch) {
+  return patch == Patch::wall_l ? 1 : patch == Patch::wall_u ? -1 : 0;
+}
+
 /// Fillets and root: no mate ever touches them.
 [[nodiscard]] constexpr bool below_the_flanks(Patch patch) {
   return patch == Patch::fillet_plus || patch == Patch::root || patch == Patch::fillet_minus;

@@ -107,7 +107,6 @@ TEST_F(BevelCommand, WhatOnlyAFaceGearCanDoIsRefused) {
   const std::pair<std::vector<std::string>, std::string> asked[] = {
       {{"correct", kTrunnion, "--measured", measured}, "this command needs a face_gear"},
       {{"check", kTrunnion, program, "--measured", measured}, "this command needs a face_gear"},
-      {{"contact", kTrunnion, "--as-cut"}, "--as-cut needs a face_gear"},
       {{"contact", kTrunnion, "--pinion-teeth", "20"}, "--pinion-teeth needs a face_gear"}};
   for (auto [words, said] : asked) {
     words.insert(words.end(), {"--out", out});

@@ -155,10 +155,10 @@ TEST(ContactCommand, AMeasuredCrowningRollsLikeTheDrawnOne) {
   }
   const auto both = run_program({"contact", plain, "--as-cut", "--measured", dir / "measured.csv", "--out", dir / "c"});
   EXPECT_EQ(both.exit_code, 2);
-  const auto bevel =
-      run_program({"contact", kSamples + "/bevel_pinion.toml", "--measured", dir / "measured.csv", "--out", dir / "d"});
+  const auto bevel = run_program({"contact", kSamples + "/bevel_pinion.toml", "--mate", kSamples + "/bevel_wheel.toml",
+                                  "--measured", dir / "measured.csv", "--out", dir / "d"});
   EXPECT_EQ(bevel.exit_code, 3);
-  EXPECT_NE(bevel.err.find("--measured needs a face_gear"), std::string::npos) << bevel.err;
+  EXPECT_NE(bevel.err.find("measured.csv:2:3: error: flank = \"1\" must be L or U"), std::string::npos) << bevel.err;
 }
 
 /// A contact run that fails, however it does, leaves what an earlier one wrote as it was and says so, and nothing

@@ -150,7 +150,7 @@ TEST(LoadedCommand, RefusesLoadsThatItDoesNotCompute) {
     return changed_sample(dir, "bevel_pinion.toml", "[machine]",
                           "[contact.load]\ntorque = 1\n" + load + "\n\n[machine]");
   };
-  refused(bevel("friction = 0.1"), "friction is computed for face gears", mated);
+  refused(bevel("friction = 1.5"), "friction = 1.5", mated);
   refused(bevel("rim = 150"), "rim = 150 mm is not between half the module", mated);
   refused(kSamples + "/offset_shaped.toml", "--ccx is for a pinion of as many teeth as the shaper",
           {"--pinion-teeth", "23", "--positions", "1", "--ccx", dir / "decks"});

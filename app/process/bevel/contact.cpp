@@ -6,8 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "app/job/file.h"
+#include "app/process/bevel/cut_walls.h"
 #include "app/process/bevel/loaded_contact.h"
 #include "app/process/bevel/pair_ease_off.h"
+#include "app/process/under_load/asked_besides.h"
 #include "app/process/under_load/loaded_page.h"
 #include "app/process/under_load/settings.h"
 #include "app/report/page/study_page.h"
@@ -26,12 +28,32 @@ struct PairAnalysis {
   contact::BevelAssembly assembly;
   double compound_mm = 0.006;
   std::vector<contact::BevelContact> walls;  ///< L, U
+  std::string route;                         ///< of the walls as cut or measured; empty: there are none
+  std::vector<contact::BevelContact> cut;    ///< those, L, U
+  std::vector<std::string> notes;            ///< of their route
   std::vector<contact::MismatchChange> changes;
   std::optional<under_load::LoadedContact> loaded;  ///< where the settings have a load
   PairEaseOff ease_off;
 };
 
 constexpr std::array<const char*, 2> kWall = {"L", "U"};
+
+const char* words_of_cut(const std::string& route) { return route == "measured" ? "measured" : "as cut"; }
+
+/// A wall that was rolled, as drawn or as cut.
+struct RolledWall {
+  const contact::BevelContact& rolled;
+  const char* wall;     ///< "L"
+  const char* surface;  ///< "exact", "cut"
+  std::string name;     ///< "L", "L, as cut"
+};
+std::vector<RolledWall> rolled_walls(const PairAnalysis& a) {
+  std::vector<RolledWall> out;
+  for (std::size_t w = 0; w < a.walls.size(); ++w) out.push_back({a.walls[w], kWall[w], "exact", kWall[w]});
+  for (std::size_t w = 0; w < a.cut.size(); ++w)
+    out.push_back({a.cut[w], kWall[w], "cut", fmt::format("{}, {}", kWall[w], words_of_cut(a.route))});
+  return out;
+}
 
 page::PageTable wall_table(const PairAnalysis& a) {
   page::PageTable t{"Walls",
@@ -40,12 +62,12 @@ page::PageTable wall_table(const PairAnalysis& a) {
                     {},
                     "Transmission error: peak to peak over one pitch, um at the mean pitch circle. Mismatch: normal "
                     "distance of the flanks at the exact ratio; 0 everywhere only for conjugate flanks."};
-  for (std::size_t w = 0; w < a.walls.size(); ++w) {
-    const contact::BevelContact& c = a.walls[w];
+  for (const RolledWall& wall : rolled_walls(a)) {
+    const contact::BevelContact& c = wall.rolled;
     std::string marked;
     for (const auto& g : c.patterns)
       marked += fmt::format("{}{:.0f} %", marked.empty() ? "" : ", ", g.marked_share * 100);
-    t.rows.push_back({kWall[w], fmt::format("{:.2f}", c.error_range_mm * 1000),
+    t.rows.push_back({wall.name, fmt::format("{:.2f}", c.error_range_mm * 1000),
                       fmt::format("{:.1f}", c.error_range_rad * 1e6), fmt::format("{:.2f}", c.mismatch_min_mm * 1000),
                       fmt::format("{:.2f}", c.mismatch_max_mm * 1000), fmt::format("{:.2f}", c.mismatch_rms_mm * 1000),
                       fmt::format("{:.2f} ({} to {})", c.marking_ratio, c.least_marking, c.most_marking), marked});
@@ -91,12 +113,12 @@ std::vector<svg::LineChart> charts_of(const PairAnalysis& a) {
                        false,
                        "The pinion stops at the first pair that touches; jumps of the slope are changes of the pair."};
   svg::LineChart pairs{"Pairs within the compound", "turn of the wheel [deg]", "pairs", {}, {}, false, false, true, ""};
-  for (std::size_t w = 0; w < a.walls.size(); ++w) {
-    const std::string name = std::string("wall ") + kWall[w];
+  for (const RolledWall& wall : rolled_walls(a)) {
+    const std::string name = "wall " + wall.name;
     svg::ChartSeries e{name, {}, {}}, n{name, {}, {}};
-    for (const auto& at : a.walls[w].cycle) {
+    for (const auto& at : wall.rolled.cycle) {
       e.x.push_back(degrees(at.phi_2));
-      e.y.push_back((at.error_rad - a.walls[w].error_mean_rad) * 1e6);
+      e.y.push_back((at.error_rad - wall.rolled.error_mean_rad) * 1e6);
       n.x.push_back(degrees(at.phi_2));
       n.y.push_back(at.marking);
     }
@@ -108,11 +130,11 @@ std::vector<svg::LineChart> charts_of(const PairAnalysis& a) {
 
 std::vector<page::StudyPage::Figure> figures_of(const PairAnalysis& a) {
   std::vector<page::StudyPage::Figure> figures;
-  for (std::size_t w = 0; w < a.walls.size(); ++w)
-    for (const auto& g : a.walls[w].patterns) {
+  for (const RolledWall& wall : rolled_walls(a))
+    for (const auto& g : wall.rolled.patterns) {
       const std::string where =
-          fmt::format("wall {} of the wheel{}", kWall[w],
-                      a.walls[w].patterns.size() > 1 ? g.half == 0 ? ", inner half" : ", outer half" : "");
+          fmt::format("wall {} of the wheel{}", wall.name,
+                      wall.rolled.patterns.size() > 1 ? g.half == 0 ? ", inner half" : ", outer half" : "");
       svg::PatternDrawing pattern;
       pattern.title = "contact pattern, " + where;
       pattern.x_label = "cone distance [mm]";
@@ -129,7 +151,7 @@ std::vector<page::StudyPage::Figure> figures_of(const PairAnalysis& a) {
         field.value.push_back(std::isnan(g.mismatch_mm[k]) ? 0 : g.mismatch_mm[k] * 1000);
       }
       field.x = pattern.x, field.y = pattern.y;
-      for (const auto& at : a.walls[w].cycle)
+      for (const auto& at : wall.rolled.cycle)
         if (at.half == g.half) pattern.path.emplace_back(at.ell, at.height);
       std::sort(pattern.path.begin(), pattern.path.end());
       figures.push_back({"Contact pattern, " + where, svg::svg_contact_pattern(pattern),
@@ -157,6 +179,7 @@ std::string page_of(const PairAnalysis& a) {
   page.introduction = {finding(a),
                        "Both gears are the exact envelopes of their mills and turn as rigid bodies without load. Wall "
                        "L of the pinion runs on wall L of the wheel, U on U."};
+  for (const auto& note : a.notes) page.introduction.push_back(note);
   page.charts = charts_of(a);
   page.figures = figures_of(a);
   page.tables = {wall_table(a), change_table(a)};
@@ -171,25 +194,26 @@ std::string page_of(const PairAnalysis& a) {
 }
 
 std::string places_csv(const PairAnalysis& a) {
-  std::string out = "wall,half,cone_distance,height,x,y,z,mismatch_um,gap_um\n";
+  std::string out = "wall,half,cone_distance,height,x,y,z,mismatch_um,gap_um,surface\n";
   const auto um = [](double mm) { return std::isnan(mm) ? std::string() : fmt::format("{:.4f}", mm * 1000); };
-  for (std::size_t w = 0; w < a.walls.size(); ++w)
-    for (const auto& g : a.walls[w].patterns)
+  for (const RolledWall& wall : rolled_walls(a))
+    for (const auto& g : wall.rolled.patterns)
       for (std::size_t k = 0; k < g.places.size(); ++k) {
         const auto& p = g.places[k];
         if (!p.point.allFinite()) continue;
-        out += fmt::format("{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}\n", kWall[w], g.half, p.ell, p.height,
-                           p.point.x(), p.point.y(), p.point.z(), um(g.mismatch_mm[k]), um(g.gap_mm[k]));
+        out += fmt::format("{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{},{}\n", wall.wall, g.half, p.ell, p.height,
+                           p.point.x(), p.point.y(), p.point.z(), um(g.mismatch_mm[k]), um(g.gap_mm[k]), wall.surface);
       }
   return out;
 }
 
 std::string transmission_csv(const PairAnalysis& a) {
-  std::string out = "wall,phi_2_deg,phi_1_deg,error_urad,half,pair,cone_distance,height,marking\n";
-  for (std::size_t w = 0; w < a.walls.size(); ++w)
-    for (const auto& at : a.walls[w].cycle)
-      out += fmt::format("{},{:.9f},{:.9f},{:.4f},{},{},{:.6f},{:.6f},{}\n", kWall[w], degrees(at.phi_2),
-                         degrees(at.phi_1), at.error_rad * 1e6, at.half, at.tooth, at.ell, at.height, at.marking);
+  std::string out = "wall,phi_2_deg,phi_1_deg,error_urad,half,pair,cone_distance,height,marking,surface\n";
+  for (const RolledWall& wall : rolled_walls(a))
+    for (const auto& at : wall.rolled.cycle)
+      out += fmt::format("{},{:.9f},{:.9f},{:.4f},{},{},{:.6f},{:.6f},{},{}\n", wall.wall, degrees(at.phi_2),
+                         degrees(at.phi_1), at.error_rad * 1e6, at.half, at.tooth, at.ell, at.height, at.marking,
+                         wall.surface);
   return out;
 }
 
@@ -206,9 +230,12 @@ std::string json_of(const PairAnalysis& a) {
                       {"shaft_angle_deg", degrees(a.assembly.shaft_angle_rad)},
                       {"pinion_axial_mm", a.assembly.pinion_axial_mm},
                       {"wheel_axial_mm", a.assembly.wheel_axial_mm}};
-  for (std::size_t w = 0; w < a.walls.size(); ++w) {
-    const contact::BevelContact& c = a.walls[w];
-    nlohmann::ordered_json wall = {{"wall", kWall[w]},
+  json["cut_surface"] = a.route.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(a.route);
+  const auto rolled = rolled_walls(a);
+  for (std::size_t w = 0; w < rolled.size(); ++w) {
+    const contact::BevelContact& c = rolled[w].rolled;
+    nlohmann::ordered_json wall = {{"wall", rolled[w].wall},
+                                   {"surface", rolled[w].surface},
                                    {"transmission_error_urad", c.error_range_rad * 1e6},
                                    {"transmission_error_um", c.error_range_mm * 1000},
                                    {"mismatch_least_um", c.mismatch_min_mm * 1000},
@@ -218,7 +245,7 @@ std::string json_of(const PairAnalysis& a) {
                                    {"pairs_least", c.least_marking},
                                    {"pairs_most", c.most_marking}};
     for (const auto& g : c.patterns) wall["marked_share"].push_back(g.marked_share);
-    add_wall(wall, a.ease_off, w);
+    if (w < a.walls.size()) add_wall(wall, a.ease_off, w);
     json["walls"].push_back(wall);
   }
   for (const auto& c : a.changes)
@@ -230,6 +257,7 @@ std::string json_of(const PairAnalysis& a) {
                                {"measured", c.measured}});
   ease_off::add_misaligned(json, a.ease_off.misaligned);
   json["finding"] = finding(a);
+  json["notes"] = a.notes;
   if (a.loaded) json["loaded"] = under_load::loaded_json(*a.loaded);
   return json.dump(1) + "\n";
 }
@@ -256,6 +284,43 @@ process::ValueOrErrors<bevel_gear::BevelGear> mate_of(const process::ContactAske
   return process::make_bevel_gear(other);
 }
 
+/// Both walls of a pair.
+process::ValueOrErrors<std::vector<contact::BevelContact>> roll_walls(const job::Job& job,
+                                                                      const contact::BevelPair& pair,
+                                                                      const contact::BevelContactOptions& options) {
+  std::vector<contact::BevelContact> out;
+  for (const int sigma : {1, -1}) {
+    auto contact = contact::bevel_contact(pair, sigma, options);
+    if (!contact) return std::vector{process::located(job, "gear", contact.error())};
+    out.push_back(std::move(contact.value()));
+  }
+  return out;
+}
+
+/// Errors of measured files have their place already.
+Diagnostic located_in_file(const job::Job& job, Diagnostic error) {
+  return error.position.file.empty() ? process::located(job, "gear", std::move(error)) : error;
+}
+
+/// The walls as cut or measured, rolled as `pair` stands: into `a`. What stands on them.
+process::ValueOrErrors<contact::BevelLeft> roll_as_cut(const job::Job& job, const bevel_gear::BevelGear& gear,
+                                                       const process::ContactAsked& asked,
+                                                       const process::CutFlanks* cut, const contact::BevelPair& pair,
+                                                       const contact::BevelContactOptions& options,
+                                                       app::StageClock& clock, PairAnalysis& a) {
+  auto walls = clock.run(
+      "cut walls", [&] { return cut != nullptr ? walls_as_cut(gear, *cut) : walls_as_measured(gear, asked.measured); });
+  if (!walls) return std::vector{located_in_file(job, walls.error())};
+  a.route = walls->route, a.notes = walls->notes;
+  contact::BevelLeft left = left_on_pair(*walls, a.job_is_pinion);
+  const auto as_cut = contact::BevelPair::make(pair.pinion(), pair.wheel(), a.assembly, {}, left);
+  if (!as_cut) return std::vector{process::located(job, "gear", as_cut.error())};
+  auto rolled = clock.run("contact", [&] { return roll_walls(job, *as_cut, options); });
+  if (auto* errors = rolled.refused()) return std::move(*errors);
+  a.cut = std::move(rolled).value();
+  return left;
+}
+
 /// Files, JSON and what stands on the screen.
 process::ContactFound told(const PairAnalysis& a) {
   process::ContactFound found;
@@ -274,14 +339,17 @@ process::ContactFound told(const PairAnalysis& a) {
     found.summary += under_load::loaded_summary(*a.loaded);
     found.files.emplace_back("loaded.csv", under_load::loaded_csv(*a.loaded));
     found.files.emplace_back("pressure.csv", under_load::pressure_csv(*a.loaded));
+    if (a.loaded->settings.root_stress) found.files.emplace_back("root_stress.csv", under_load::root_csv(*a.loaded));
   }
+  for (const auto& note : a.notes) found.summary += "  note: " + note + "\n";
   return found;
 }
 
 }  // namespace
 
 process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, const bevel_gear::BevelGear& gear,
-                                                        const process::ContactAsked& asked, app::StageClock& clock) {
+                                                        const process::ContactAsked& asked,
+                                                        const process::CutFlanks* cut, app::StageClock& clock) {
   PairAnalysis a;
   a.name = job.name;
   const job::ContactSettings settings = under_load::contact_settings(job, asked);
@@ -300,10 +368,14 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   if (!pair) return std::vector{process::located(job, "gear", pair.error())};
   // Two rows and columns lie in a margin of 5 %.
   const contact::BevelContactOptions options{25, 25, 32, a.compound_mm};
-  for (const int sigma : {1, -1}) {
-    auto contact = clock.run("contact", [&] { return contact::bevel_contact(*pair, sigma, options); });
-    if (!contact) return std::vector{process::located(job, "gear", contact.error())};
-    a.walls.push_back(std::move(contact.value()));
+  auto rolled = clock.run("contact", [&] { return roll_walls(job, *pair, options); });
+  if (auto* errors = rolled.refused()) return std::move(*errors);
+  a.walls = std::move(rolled).value();
+  contact::BevelLeft left;
+  if (cut != nullptr || !asked.measured.files.empty()) {
+    auto found = roll_as_cut(job, gear, asked, cut, *pair, options, clock, a);
+    if (auto* errors = found.refused()) return std::move(*errors);
+    left = std::move(found).value();
   }
   auto changes = clock.run("changes", [&] {
     return contact::mismatch_changes(pinion, wheel, {11, 9, 24, a.compound_mm});
@@ -311,7 +383,7 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   if (!changes) return std::vector{process::located(job, "gear", changes.error())};
   a.changes = std::move(changes.value());
   if (settings.load) {
-    auto loaded = clock.run("load", [&] { return analyse_loaded(job, pinion, wheel, settings); });
+    auto loaded = clock.run("load", [&] { return analyse_loaded(job, pinion, wheel, settings, left, a.route); });
     if (auto* errors = loaded.refused()) return std::move(*errors);
     a.loaded = std::move(loaded).value();
   }

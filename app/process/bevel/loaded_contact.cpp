@@ -3,9 +3,12 @@
 #include <algorithm>
 
 #include "app/job/file.h"
+#include "app/process/under_load/loaded_side.h"
 #include "geometry/contact/bevel_pattern_place.h"
 #include "geometry/decks/bevel_deck.h"
 #include "geometry/loaded_bevel/bevel_body.h"
+#include "geometry/loaded_bevel/bevel_friction.h"
+#include "geometry/loaded_bevel/bevel_root_stress.h"
 #include "geometry/loaded_bevel/loaded_bevel_pair.h"
 
 namespace toothpath::bevel {
@@ -37,10 +40,9 @@ const char* wall_of(int sigma) { return sigma > 0 ? "wall L" : "wall U"; }
 
 }  // namespace
 
-process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(const job::Job& job,
-                                                                 const bevel_gear::BevelGear& pinion,
-                                                                 const bevel_gear::BevelGear& wheel,
-                                                                 const job::ContactSettings& settings) {
+process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(
+    const job::Job& job, const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel,
+    const job::ContactSettings& settings, const contact::BevelLeft& left, const std::string& route) {
   under_load::LoadedContact found;
   found.words = under_load::kBevelWords;
   found.settings = settings.load.value();
@@ -61,13 +63,18 @@ process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(const job::Job&
   for (const int sigma : {1, -1}) {
     const auto pair = loaded_bevel::make_loaded_bevel_pair(pinion, wheel, sigma, *options);
     if (!pair) return std::vector{process::located(job, "gear", pair.error())};
-    const char* wall = wall_of(sigma);
-    auto cycle = loaded_bevel::loaded_cycle(*pair, under_load::load_of(found, load.torque_Nm));
-    if (!cycle) {
-      cycle.error().message = fmt::format("{}: {}", wall, cycle.error().message);
-      return std::vector{process::located(job, "contact.load", cycle.error())};
-    }
-    under_load::add_side(found, {sigma, wall, false, std::move(*cycle)}, under_load::is_steel(load));
+    const auto carried = under_load::load_of(found, load.torque_Nm);
+    auto drawn = under_load::loaded_side(*pair, carried, sigma, wall_of(sigma), load);
+    if (!drawn) return std::vector{process::located(job, "contact.load", drawn.error())};
+    under_load::add_side(found, std::move(*drawn), under_load::is_steel(load));
+    if (!left) continue;
+    const auto rough = loaded_bevel::with_left(*pair, left);
+    if (!rough) return std::vector{process::located(job, "gear", rough.error())};
+    auto worn = under_load::loaded_side(
+        *rough, carried, sigma, fmt::format("{}, {}", wall_of(sigma), route == "measured" ? route : "as cut"), load);
+    if (!worn) return std::vector{process::located(job, "contact.load", worn.error())};
+    worn->as_cut = true;
+    under_load::add_side(found, std::move(*worn), false);
   }
   return found;
 }
@@ -80,6 +87,7 @@ process::ValueOrErrors<process::NamedFiles> loaded_decks(const job::Job& job, co
   if (!options) return std::vector{process::located(job, "contact.load.rim", options.error())};
   process::NamedFiles files;
   for (const auto& side : found.sides) {
+    if (side.as_cut) continue;
     const auto pair = loaded_bevel::make_loaded_bevel_pair(pinion, wheel, side.side, *options);
     if (!pair) return std::vector{process::located(job, "gear", pair.error())};
     decks::BevelDeckOptions deck;

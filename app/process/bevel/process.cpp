@@ -212,17 +212,14 @@ class BevelProcess final : public process::GearProcess {
     return std::vector{process::needs_face_gear(job_)};
   }
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
-    for (const auto& [given, option] : {std::pair(asked.pinion_teeth.has_value(), "--pinion-teeth"),
-                                        {asked.as_cut, "--as-cut"},
-                                        {!asked.measured.files.empty(), "--measured"}})
-      if (given)
-        return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs a face_gear", job_.gear_type(), option);
+    if (asked.pinion_teeth.has_value())
+      return fail_at(job_.where("gear.type"), "type = \"{}\", but --pinion-teeth needs a face_gear", job_.gear_type());
     return Ok{};
   }
   [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,
-                                                                      const process::CutFlanks*,
+                                                                      const process::CutFlanks* cut,
                                                                       app::StageClock& clock) const override {
-    return roll_pair(job_, gear_, asked, clock);
+    return roll_pair(job_, gear_, asked, cut, clock);
   }
   [[nodiscard]] std::string contact_section(const std::vector<proof::SurfaceGrid>&,
                                             std::vector<std::string>&) const override {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/job/file.h"
+#include "app/process/under_load/loaded_side.h"
 #include "geometry/decks/rows_deck.h"
 
 namespace toothpath::face {
@@ -77,23 +78,6 @@ Result<loaded::PairOptions> pair_options(const job::ContactLoad& load, const fac
   return options;
 }
 
-/// One flank over a pitch, with what else the job asks of it.
-Result<under_load::LoadedSide> loaded_side(const loaded::LoadedPair& pair, const loaded::Load& carried,
-                                           const char* surface, const job::ContactLoad& asked) {
-  auto cycle = loaded::loaded_cycle(pair, carried);
-  if (!cycle) return cycle.error();
-  under_load::LoadedSide out{pair.side, fmt::format("flank {:+}, {}", pair.side, surface), false, std::move(*cycle)};
-  if (asked.friction)
-    for (const auto& position : out.cycle.positions)
-      out.friction.push_back(loaded::friction_of(pair, position, *asked.friction));
-  if (asked.root_stress) {
-    auto root = loaded::root_stress(pair, out.cycle);
-    if (!root) return root.error();
-    out.root = *root;
-  }
-  return out;
-}
-
 }  // namespace
 
 process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(
@@ -131,7 +115,7 @@ process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(
         pair->rings[static_cast<std::size_t>(member->flank.zone)].removal = [member](const Vec3& at) {
           return removed_at(*member, at);
         };
-    auto drawn = loaded_side(*pair, carried, "exact", load);
+    auto drawn = under_load::loaded_side(*pair, carried, side, fmt::format("flank {:+}, exact", side), load);
     if (!drawn) return std::vector{process::located(job, "contact.load", drawn.error())};
     under_load::add_side(found, std::move(*drawn), under_load::is_steel(load));
     std::vector<const contact::ContactFlank*> of_side;
@@ -140,7 +124,8 @@ process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(
     if (of_side.empty()) continue;
     loaded::LoadedPair rough = *pair;
     rough.options.gap = [&](const loaded::Segment& s) { return gap_of_cut(of_side, s); };
-    auto worn = loaded_side(rough, carried, route == "measured" ? "measured" : "as cut", load);
+    auto worn = under_load::loaded_side(
+        rough, carried, side, fmt::format("flank {:+}, {}", side, route == "measured" ? "measured" : "as cut"), load);
     if (!worn) return std::vector{process::located(job, "contact.load", worn.error())};
     worn->as_cut = true;
     under_load::add_side(found, std::move(*worn), false);

@@ -25,17 +25,22 @@ nlohmann::ordered_json friction_json(double mu, const std::vector<loaded::Fricti
 
 /// The two fillets of a flank, by body.
 struct NamedRoot {
-  const char *body, *face, *height;
+  const char *body, *name, *face, *height;  ///< body: key of files; name: for people
   const loaded::RootPlace& at;
   double error;
 };
-std::array<NamedRoot, 2> roots_of(const loaded::RootStress& root) {
-  return {{{"gear", "radius", "z", root.gear, root.gear_error},
-           {"pinion", "section", "radius", root.pinion, root.pinion_error}}};
+std::array<NamedRoot, 2> roots_of(const PairWords& words, const loaded::RootStress& root) {
+  return {{{"gear", words.gear, words.gear_face, words.gear_height, root.gear, root.gear_error},
+           {"pinion", "pinion", words.pinion_face, words.pinion_height, root.pinion, root.pinion_error}}};
 }
-nlohmann::ordered_json root_json(const loaded::RootStress& root) {
+/// A key as people write it.
+std::string spoken(std::string key) {
+  std::replace(key.begin(), key.end(), '_', ' ');
+  return key;
+}
+nlohmann::ordered_json root_json(const PairWords& words, const loaded::RootStress& root) {
   nlohmann::ordered_json json;
-  for (const auto& r : roots_of(root))
+  for (const auto& r : roots_of(words, root))
     json[r.body] = {{"stress_MPa", r.at.stress},
                     {"error_MPa", r.error},
                     {"ring", r.at.ring},
@@ -66,17 +71,23 @@ page::PageTable friction_table(const LoadedContact& found) {
 }
 
 page::PageTable root_table(const LoadedContact& found) {
-  page::PageTable t{"Stress at the root",
-                    {"flank", "body", "MPa", "mesh +- MPa", "ring", "tooth", "position", "along mm", "height mm"},
-                    {},
-                    fmt::format("The largest principal stress in the fillets under the loaded flanks over the pitch. "
-                                "Along and height: of the gear radius and z, of the pinion section and radius. Mesh: "
-                                "what two meshes tell of their error. The pinion's fillet is a circle of {:g} mm, not "
-                                "the one that its tool cuts.",
-                                found.pinion_fillet_mm)};
+  page::PageTable t{
+      "Stress at the root",
+      {"flank", "body", "MPa", "mesh +- MPa", found.words.ring, "tooth", "position", "along mm", "height mm"},
+      {},
+      fmt::format("The largest principal stress in the fillets under the loaded flanks over the pitch. "
+                  "Along and height: of the {} {} and {}, of the pinion {} and {}. Mesh: "
+                  "what two meshes tell of their error. {}",
+                  found.words.gear, spoken(found.words.gear_face), found.words.gear_height,
+                  spoken(found.words.pinion_face), found.words.pinion_height,
+                  found.pinion_fillet_mm > 0
+                      ? fmt::format("The pinion's fillet is a circle of {:g} mm, not the one that its "
+                                    "tool cuts.",
+                                    found.pinion_fillet_mm)
+                      : "Fillets are those that the corner arcs of the mills leave.")};
   for (const auto& side : found.sides)
-    for (const auto& r : roots_of(side.root.value()))
-      t.rows.push_back({side.name, r.body, fmt::format("{:.1f}", r.at.stress), fmt::format("{:.1f}", r.error),
+    for (const auto& r : roots_of(found.words, side.root.value()))
+      t.rows.push_back({side.name, r.name, fmt::format("{:.1f}", r.at.stress), fmt::format("{:.1f}", r.error),
                         std::to_string(r.at.ring), std::to_string(r.at.tooth), std::to_string(r.at.position),
                         fmt::format("{:.3f}", r.at.face), fmt::format("{:.3f}", r.at.height)});
   return t;
@@ -95,22 +106,23 @@ std::string besides_summary(const LoadedContact& found, const LoadedSide& side) 
         *found.settings.friction, most_of(side.friction, &Friction::axial_n),
         most_of(side.friction, &Friction::axial_bound_n), 100 * most_of(side.friction, &Friction::torque_part));
   if (!side.root) return out;
-  for (const auto& r : roots_of(*side.root))
+  for (const auto& r : roots_of(found.words, *side.root))
     out += fmt::format(
-        "    root stress of the {} {:.1f} MPa (mesh +-{:.1f}) at most, ring {}, tooth {:+}, {} {:.3f}, {} {:.3f} mm\n",
-        r.body, r.at.stress, r.error, r.at.ring, r.at.tooth, r.face, r.at.face, r.height, r.at.height);
+        "    root stress of the {} {:.1f} MPa (mesh +-{:.1f}) at most, {} {}, tooth {:+}, {} {:.3f}, {} {:.3f} mm\n",
+        r.name, r.at.stress, r.error, found.words.ring, r.at.ring, r.at.tooth, spoken(r.face), r.at.face, r.height,
+        r.at.height);
   return out;
 }
 
 void add_besides(nlohmann::ordered_json& flank, const LoadedContact& found, const LoadedSide& side) {
   if (!side.friction.empty()) flank["friction"] = friction_json(*found.settings.friction, side.friction);
-  if (side.root) flank["root_stress"] = root_json(*side.root);
+  if (side.root) flank["root_stress"] = root_json(found.words, *side.root);
 }
 
 std::string root_csv(const LoadedContact& found) {
   std::string out = "surface,flank,body,ring,tooth,position,along_mm,height_mm,stress_MPa,mesh_error_MPa\n";
   for (const auto& side : found.sides)
-    for (const auto& r : roots_of(side.root.value()))
+    for (const auto& r : roots_of(found.words, side.root.value()))
       out += fmt::format("{},{},{},{},{},{},{:.4f},{:.4f},{:.3f},{:.3f}\n", side.as_cut ? "cut" : "exact", side.side,
                          r.body, r.at.ring, r.at.tooth, r.at.position, r.at.face, r.at.height, r.at.stress, r.error);
   return out;

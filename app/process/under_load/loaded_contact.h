@@ -20,13 +20,17 @@ struct PairWords {
   const char* rings = "rings";
   const char* columns = "r,z";
   const char* along = "radius from the gear's axis [mm]";
+  /// Where the root of the gear is, along the face and in height, and that of the pinion; keys of contact.json.
+  const char *gear_face = "radius", *gear_height = "z", *pinion_face = "section", *pinion_height = "radius";
 };
 inline constexpr PairWords kFaceWords{},
-    kBevelWords{"wheel", "half", "halves", "cone_distance,height", "cone distance on the wheel [mm]"};
+    kBevelWords{
+        "wheel",  "half",          "halves", "cone_distance,height", "cone distance on the wheel [mm]", "cone_distance",
+        "height", "cone_distance", "height"};
 
 struct LoadedSide {
   int side = 1;         ///< flank of a face gear, sigma of a bevel wall
-  std::string name;     ///< "flank +1, exact", "wall L"
+  std::string name;     ///< "flank +1, exact", "wall L", "wall L, measured"
   bool as_cut = false;  ///< with the deviation of the cut flank as gap
   loaded::LoadedCycle cycle;
   std::vector<loaded::Friction> friction = {};  ///< of every position, where the job asks for it
