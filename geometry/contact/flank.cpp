@@ -54,8 +54,8 @@ double set_back(const Pinion<double>& pinion, const modification::Field& field, 
   const OwnNormal n = normal_through(pinion, side, place);
   double back = 0;
   for (int k = 0; k < 30; ++k) {  // the foot on the plain flank; amounts change by hundredths along it
-    const double next =
-        field.removal(pinion.r_a - std::hypot(place.x - back * n.x, place.y - back * n.y), place.Z - back * n.Z);
+    const double x = place.x - back * n.x, y = place.y - back * n.y,
+                 next = field.removal(pinion.r_a - std::sqrt(x * x + y * y), place.Z - back * n.Z);
     if (std::abs(next - back) < 1e-14) return next;
     back = next;
   }

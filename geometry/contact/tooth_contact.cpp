@@ -37,8 +37,13 @@ Lattice lattice_of(const std::vector<ContactMember>& members, const RollOptions&
   lattice.step = f.surface.pitch / options.steps;
   lattice.start = f.surface.i * f.surface.flank_phi(f.side, median_of(f, f.theta), median_of(f, f.B));
   const auto reached = [&](int k) {
-    return std::any_of(members.begin(), members.end(),
-                       [&](const auto& member) { return TouchSearch(member, lattice.phi_2(k)).any(); });
+    const GearTurn turn(lattice.phi_2(k));
+    return std::any_of(members.begin(), members.end(), [&](const auto& member) {
+      const ContactFlank& flank = member.flank;
+      for (std::size_t n = 0; n < flank.points.size(); ++n)
+        if (on_involute(member.pinion, turn(flank.points[n] + flank.deviation_mm[n] * flank.normals[n]))) return true;
+      return false;
+    });
   };
   const int widest = options.widest_pitches * options.steps, stride = std::max(1, options.steps / 8);
   int low = 0, high = 0;

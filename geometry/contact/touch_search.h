@@ -29,22 +29,46 @@ inline double asked_turn(const Pinion<double>& pinion, const modification::Field
   return field == nullptr ? plain : plain - set_back(pinion, *field, side, place) / (pinion.r_b * pinion.cos_bb);
 }
 
+/// Has a place of the gear a place on the pinion's involute, whatever the turn?
+inline bool on_involute(const Pinion<double>& pinion, const Vec3& point) {
+  const double radius = pinion.place(point).radius;
+  return radius >= pinion.r_b && radius <= pinion.r_a;
+}
+
+/// Where f is highest between lo and hi, to 2e-7 of their distance; an end where f is higher there. Source: Brent 1973,
+/// Algorithms for Minimization without Derivatives, ch. 5: parabolas, golden section where they do not close in.
 template <typename F>
-double golden_place(F&& f, double lo, double hi) {
-  constexpr double kRatio = 0.6180339887498949;
-  double a = lo, b = hi, c = b - kRatio * (b - a), d = a + kRatio * (b - a), fc = f(c), fd = f(d);
-  for (int k = 0; k < 32; ++k) {
-    if (fc > fd) {
-      b = d, d = c, fd = fc;
-      c = b - kRatio * (b - a), fc = f(c);
+double highest_place(F&& f, double lo, double hi) {
+  constexpr double kGolden = 0.3819660112501051;
+  const double enough = 1e-7 * (hi - lo);
+  double a = lo, b = hi, x = a + kGolden * (b - a), w = x, v = x, fx = f(x), fw = fx, fv = fx, step = 0, last = 0;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = (a + b) / 2;
+    if (std::abs(x - middle) <= 2 * enough - (b - a) / 2) break;
+    bool parabola = false;
+    if (std::abs(last) > enough) {
+      const double r = (x - w) * (fx - fv), s = (x - v) * (fx - fw), sum = 2 * (s - r), p = (x - v) * s - (x - w) * r,
+                   way = p / sum;
+      parabola = std::abs(way) < std::abs(last) / 2 && x - way > a && x - way < b;  // never with a place without f
+      if (parabola) {
+        last = step, step = -way;
+        if (x + step - a < 2 * enough || b - x - step < 2 * enough) step = std::copysign(enough, middle - x);
+      }
+    }
+    if (!parabola) last = (x < middle ? b : a) - x, step = kGolden * last;
+    const double u = x + (std::abs(step) >= enough ? step : std::copysign(enough, step)), fu = f(u);
+    if (fu >= fx) {
+      (u < x ? b : a) = x;
+      v = w, fv = fw, w = x, fw = fx, x = u, fx = fu;
     } else {
-      a = c, c = d, fc = fd;
-      d = a + kRatio * (b - a), fd = f(d);
+      (u < x ? a : b) = u;
+      if (fu >= fw || w == x) v = w, fv = fw, w = u, fw = fu;
+      else if (fu >= fv || v == x || v == w) v = u, fv = fu;
     }
   }
-  const double m = (a + b) / 2, fm = f(m), flo = f(lo), fhi = f(hi);
-  if (flo > fm && flo >= fhi) return lo;
-  return fhi > fm ? hi : m;
+  const double flo = f(lo), fhi = f(hi);
+  if (flo > fx && flo >= fhi) return lo;
+  return fhi > fx ? hi : x;
 }
 
 /// The search for the first touch on one flank at one position of the gear: the highest asked turn over the grid and
@@ -62,6 +86,10 @@ class TouchSearch {
       nodes_[k] = asked_turn(pinion_, on_pinion_, flank_.side,
                              turn_(flank_.points[k] + flank_.deviation_mm[k] * flank_.normals[k]));
       if (nodes_[k] > kNever) any_ = true;
+    }
+    for (int c = 0; c < flank_.columns; ++c) {
+      Rows& rows = columns_.emplace_back();
+      for (int r = 0; r < flank_.rows; ++r) rows.take(r, nodes_[flank_.index(r, c)]);
     }
   }
 
@@ -85,7 +113,7 @@ class TouchSearch {
     for (int k = 0; k < flank_.columns; ++k) {
       const double from = std::max(0.0, std::floor(column) - 1),
                    to = std::min(flank_.columns - 1.0, std::ceil(column) + 1);
-      const double next = golden_place(along, from, to);
+      const double next = highest_place(along, from, to);
       const bool at_end = (next == from && from > 0) || (next == to && to < flank_.columns - 1);
       column = next;
       if (!at_end) break;
@@ -99,6 +127,17 @@ class TouchSearch {
   }
 
  private:
+  /// Rows of a column that are on the pinion's involute, and the best of them; -1: none.
+  struct Rows {
+    int first = -1, last = -1, best = -1;
+    double value = kNever;
+    void take(int r, double f) {
+      if (f == kNever) return;
+      if (first < 0) first = r;
+      last = r;
+      if (f > value) value = f, best = r;
+    }
+  };
   struct Cell {
     std::size_t k00, k01, k10, k11;
     double u, v;
@@ -135,36 +174,75 @@ class TouchSearch {
     const double bend = 2 * value - below - above;
     return bend > 0 ? value + (above - below) * (above - below) / (8 * bend) : value;
   }
+  /// Of a column between two columns of nodes. An exact flank is smooth: its best row lies about those of its two
+  /// neighbours, and the search goes on while it is the last that was asked.
+  [[nodiscard]] Rows rows_between(int c0, double column) const {
+    const Rows &a = columns_[static_cast<std::size_t>(c0)], &b = columns_[static_cast<std::size_t>(c0) + 1];
+    Rows rows;
+    if (!exact_ || a.best < 0 || b.best < 0) {
+      for (int r = 0; r < flank_.rows; ++r) rows.take(r, value_at(r, column));
+      return rows;
+    }
+    const auto there = [&](int r) { return r >= 0 && r < flank_.rows && on_pinion(r, column); };
+    const auto end_from = [&](int r, int way) {  // the last row that way, from one that is near it
+      if (!there(r)) do
+          r -= way;
+        while (r >= 0 && r < flank_.rows && !there(r));
+      while (there(r + way)) r += way;
+      return r;
+    };
+    rows.first = end_from(std::min(a.first, b.first), -1);
+    if (rows.first >= flank_.rows) return {};  // narrower than a row
+    rows.last = end_from(std::max({a.last, b.last, rows.first}), 1);
+    int low = std::clamp(std::min(a.best, b.best) - 1, rows.first, rows.last),
+        high = std::clamp(std::max(a.best, b.best) + 1, rows.first, rows.last);
+    const auto take = [&](int r) {
+      if (const double f = value_at(r, column); f > rows.value) rows.value = f, rows.best = r;
+    };
+    for (int r = low; r <= high; ++r) take(r);
+    while (rows.best == low && low > rows.first) take(--low);
+    while (rows.best == high && high < rows.last) take(++high);
+    return rows;
+  }
   /// The best row of a column; with `refine` between the nodes. -1: none is within the pinion's involute.
   [[nodiscard]] double row_of(double column, bool refine) const {
     const int c0 = std::clamp(static_cast<int>(column), 0, flank_.columns - 1);
-    const bool node_column = column == c0;
-    const auto at_node = [&](int r) { return node_column ? nodes_[flank_.index(r, c0)] : value_at(r, column); };
-    int best = -1, first = -1, last = -1;
-    double value = kNever;
-    for (int r = 0; r < flank_.rows; ++r) {
-      const double f = at_node(r);
-      if (f == kNever) continue;
-      if (first < 0) first = r;
-      last = r;
-      if (f > value) value = f, best = r;
-    }
-    if (best < 0) return -1;
+    const Rows rows = column == c0 ? columns_[static_cast<std::size_t>(c0)] : rows_between(c0, column);
+    if (rows.best < 0) return -1;
     // Where the pinion's involute ends between two nodes its edge is a place of its own.
-    const double low = first > 0 ? edge(column, first, first - 1) : 0;
-    const double high = last + 1 < flank_.rows ? edge(column, last, last + 1) : flank_.rows - 1;
-    const double from = std::max(low, double(best - 1)), to = std::min(high, double(best + 1));
-    double row = best;
-    if (refine) row = golden_place([&](double r) { return value_at(r, column); }, from, to);
+    const double low = rows.first > 0 ? edge(column, rows.first, rows.first - 1) : 0;
+    const double high = rows.last + 1 < flank_.rows ? edge(column, rows.last, rows.last + 1) : flank_.rows - 1;
+    double row = rows.best;
+    if (refine)
+      row =
+          highest_place([&](double r) { return value_at(r, column); }, std::max(low, row - 1), std::min(high, row + 1));
+    double value = value_at(row, column);
     for (const double end : {low, high})
-      if (value_at(end, column) > value_at(row, column)) row = end;
+      if (const double at_end = value_at(end, column); at_end > value) row = end, value = at_end;
     return row;
   }
-  /// Row between `inside` and `outside` where the asked turn ceases to exist, on the inside.
+  [[nodiscard]] bool on_pinion(double row, double column) const { return inside_by(row, column) >= 0; }
+  /// By how much the place lies inside the pinion's involute, mm of its radius; below 0 outside.
+  [[nodiscard]] double inside_by(double row, double column) const {
+    const double radius = pinion_.place(turn_(point_at(row, column))).radius;
+    return std::min(pinion_.r_a - radius, radius - pinion_.r_b);
+  }
+  /// Row between `inside` and `outside` where the pinion's involute ends, on the inside, to 1e-12 mm or rows: the rule
+  /// of false position with the Illinois correction.
   [[nodiscard]] double edge(double column, double inside, double outside) const {
-    for (int k = 0; k < 48; ++k) {
-      const double middle = (inside + outside) / 2;
-      (value_at(middle, column) > kNever ? inside : outside) = middle;
+    constexpr double kEnough = 1e-12;
+    double in = inside_by(inside, column), out = inside_by(outside, column), least = in;
+    for (int k = 0, side = 0; k < 100 && least > kEnough && std::abs(inside - outside) > kEnough; ++k) {
+      const double row = inside + (outside - inside) * in / (in - out), by = inside_by(row, column);
+      if (by >= 0) {
+        inside = row, in = least = by;
+        if (side > 0) out /= 2;
+        side = 1;
+      } else {
+        outside = row, out = by;
+        if (side < 0) in /= 2;
+        side = -1;
+      }
     }
     return inside;
   }
@@ -175,6 +253,7 @@ class TouchSearch {
   GearTurn turn_;
   bool exact_, any_ = false;
   std::vector<double> nodes_;
+  std::vector<Rows> columns_;
 };
 
 }  // namespace toothpath::contact
