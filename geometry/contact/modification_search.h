@@ -8,6 +8,7 @@
 // pair in bevel_search_model.h.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <vector>
 
@@ -35,12 +36,19 @@ struct SearchOptions {
   double unit_mm = 1e-4;        ///< amounts are whole numbers of it
   int rows = 41, columns = 49;  ///< places of a flank
   int steps = 48;               ///< turns a pitch
+  /// Errors of one side are nearly equal if they differ by no more than this, or than this share of the lesser one; of
+  /// nearly equal ones the least removal counts.
+  double nearly_equal_mm = 1e-4, nearly_equal_share = 0.05;
+  [[nodiscard]] double nearly_equal_to(double error_mm) const {
+    return error_mm + std::max(nearly_equal_mm, nearly_equal_share * error_mm);
+  }
 };
 
 /// Ease-off of one flank on a grid, with what each modification takes; lists column by column, rows rising.
 struct SearchFlank {
   int rows = 0, columns = 0;
   std::vector<double> gap, phi, bend;  ///< NaN: no common normal. Gaps and bends as motion: divided by `per_motion`
+  std::vector<std::size_t> unmet;      ///< places without a common normal
   std::vector<double> per_motion;      ///< distance per unit of motion; empty: 1 everywhere
   std::vector<Edges> edges;            ///< in the margin
   /// What a mm of an amount takes from every place, as motion: with the turn at which the place is nearest, and how
@@ -63,6 +71,11 @@ struct SearchFlank {
   void add_removals(const std::vector<SearchedModification>& searched, int side, double step, const Removal& removal);
   [[nodiscard]] double distance_per_motion(std::size_t place) const {
     return per_motion.empty() ? 1 : per_motion[place];
+  }
+  /// What an amount of modification s takes; null: nothing, or it meets another flank.
+  [[nodiscard]] const Taken* taken(std::size_t s, double amount_mm, int length) const {
+    const auto& of_way = (amount_mm > 0 ? up : down)[s];
+    return amount_mm == 0 || of_way.empty() ? nullptr : &of_way[static_cast<std::size_t>(length)];
   }
 };
 
@@ -87,16 +100,38 @@ class SearchModel {
   /// @param amounts_mm, lengths  one a searched modification: its amount, and which of its lengths
   [[nodiscard]] Judged judge(const std::vector<double>& amounts_mm, const std::vector<int>& lengths) const;
 
+  /// What a candidate makes of the places of each flank: the sums of ease-off and removals, their slopes and bends;
+  /// slope and bend empty where none moves on.
+  struct FlankSums {
+    std::vector<double> gap, slope, bend;
+  };
+  using Sums = std::vector<FlankSums>;
+  [[nodiscard]] Sums sums(const std::vector<double>& amounts_mm, const std::vector<int>& lengths) const;
+  /// `times` what an amount of modification s takes comes to the sums.
+  void add(Sums& to, std::size_t s, double amount_mm, int length, double times) const;
+  /// Where a candidate was worst: asked first of the next one, which often is worst there as well.
+  struct Worst {
+    int low = 0, high = 0;  ///< turns of the least and the greatest of the motion curve
+    std::size_t flank = 0;  ///< the place of the least gap
+    std::size_t place = kNowhere;
+    static constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
+  };
+  /// An error is at least, a gap at most so much: does more of it matter?
+  using Enough = std::function<bool(double error_mm, double gap_mm)>;
+  /// The same from the sums; given up, with what was found by then, as soon as `enough` says so.
+  [[nodiscard]] Judged judge(const Sums& sums, Worst& worst, const Enough& enough) const;
+
+  /// The most that is taken at one place, by the modifications of one member together, summed over the flanks and both
+  /// members, and the greatest of them, mm.
+  struct Removal {
+    double sum_mm = 0, most_mm = 0;
+  };
+  [[nodiscard]] Removal removal(const std::vector<double>& amounts_mm, const std::vector<int>& lengths,
+                                const std::vector<SearchedModification>& searched) const;
+
  private:
   void place_turns(SearchFlank& flank) const;
-  /// A flank with what a candidate takes.
-  struct Changed {
-    std::vector<double> gap;
-    std::vector<double> phi, bend;  ///< empty: those of the flank
-  };
-  [[nodiscard]] static Changed changed(const SearchFlank& flank, const std::vector<double>& amounts_mm,
-                                       const std::vector<int>& lengths);
-  [[nodiscard]] double motion(const SearchFlank& flank, const Changed& changed, int k) const;
+  class Curve;
 
   std::vector<SearchFlank> flanks_;
   double start_ = 0, step_ = 0;
@@ -119,16 +154,30 @@ struct SearchResult {
   double margin_gap_mm = 0;  ///< the least of all models
   std::size_t limiting = 0;  ///< the model that has it, of its side
   Edge nearest = Edge::inner_end;
-  double score = 0;  ///< what the search made least; of the same models and gap only
-  long judged = 0;   ///< candidates
+  std::vector<double> side_error_mm;            ///< of every side: the greatest of its models
+  std::vector<double> least_error_mm;           ///< of every side: the least that was found, whatever is taken off
+  std::vector<int> least_units, least_lengths;  ///< that has them
+  SearchModel::Removal removal;                 ///< of the first models of all sides
+  double lack_mm = 0;                           ///< by which margins are short, summed over the sides
+  /// What is left without one modification: the greatest error, the least gap; of those that are not 0.
+  struct Without {
+    std::size_t searched = 0;
+    double error_mm = 0, margin_gap_mm = 0;
+  };
+  std::vector<Without> without;
+  long judged = 0;  ///< candidates
 };
-/// The best over all models of all sides: inside first, then the least error of every side. From the best of a coarse
-/// lattice, steps to ever smaller ones. The same on any number of threads.
+/// The best over all models of all sides: inside first, then the least error of every side; of those with errors nearly
+/// equal to it the one with the least removal, and no modification is left that could be 0 or a unit less. From the
+/// best of a coarse lattice, steps to ever smaller ones. The same on any number of threads. Its share is told.
 /// @param sides  that share a searched modification; what belongs to one of them is sought for it alone
-/// @param known  the only start, found for another side; null: the lattice
+/// @param known  found for another side: the only starts are its modifications, and those of its least errors; null:
+/// the lattice
 [[nodiscard]] SearchResult search_modifications(const std::vector<SearchedSide>& sides,
                                                 const std::vector<SearchedModification>& searched,
                                                 const SearchOptions& options, const SearchResult* known = nullptr);
+/// Of two results of the same sides: is `a` to be preferred by the same rule?
+[[nodiscard]] bool preferred(const SearchResult& a, const SearchResult& b, const SearchOptions& options);
 
 /// The same of one side alone.
 [[nodiscard]] inline SearchResult search_modifications(std::vector<SearchModel> models,

@@ -132,6 +132,57 @@ TEST(ContactOptimise, WritesAJobThatDoesWhatWasPromised) {
   EXPECT_FALSE(report.at("misalignments").at("rows")[0].at("flanks")[0].at("zones")[0].at("reaches").empty());
 }
 
+/// Each key is needed: without it the error is not nearly equal to the least, or the margins lack; and what is said of
+/// the pair without it is what the pair does when its job does not have it.
+TEST(ContactOptimise, EveryKeyIsNeeded) {
+  const TestDir dir;
+  const std::string job = plain_job(dir, "plain.toml", "[contact.misalignment]\nangle = 0.03\n");
+  const std::string found_job = dir / "found.toml";
+  const Json found =
+      report_of({"contact", job, "--optimise", "--write", found_job, "--out", dir / "out"}).at("optimised");
+  ASSERT_TRUE(found.at("found").get<bool>());
+  const Json& errors = found.at("transmission_error_um");
+  const double most = errors.at("nearly_equal_up_to"), least = errors.at("least_of_the_search");
+  EXPECT_NEAR(most, least + std::max(0.1, 0.05 * least), 1e-9);
+  EXPECT_LE(errors.at("of_the_search").get<double>(), most + 1e-9);
+  ASSERT_FALSE(found.at("without").empty());
+  const std::string text = file_text(found_job);
+  int rolled = 0;
+  for (const Json& without : found.at("without")) {
+    const double error = without.at("transmission_error_um"), gap = without.at("margin_gap_um");
+    EXPECT_TRUE(error > most || gap < without.at("wanted_gap_um").get<double>() + 1e-5) << without.dump();
+    EXPECT_LT(without.at("wanted_gap_um").get<double>(), 7);
+    // The job without the first key of that kind and flank.
+    const std::string kind = "kind = \"" + without.at("kind").get<std::string>() + "\"";
+    std::string less = text;
+    for (std::size_t at = text.find("\n[[", text.find("# Found by")); at != std::string::npos;) {
+      const std::size_t end = std::min(text.find("\n[[", at + 1), text.size());
+      const std::string key = text.substr(at, end - at);
+      const bool of_pinion = key.find("[[contact") != std::string::npos;
+      if (key.find(kind) != std::string::npos && of_pinion == (without.at("member") == "pinion") &&
+          (key.find("flank") == std::string::npos ||
+           key.find(without.at("flank").get<std::string>()) != std::string::npos))
+        less = text.substr(0, at) + "\n" + text.substr(end);
+      at = end < text.size() ? end : std::string::npos;
+    }
+    ASSERT_NE(less, text) << without.dump();
+    write_file(dir / "less.toml", less);
+    const Json rows = report_of({"contact", dir / "less.toml", "--out", dir / "less"}).at("misalignments").at("rows");
+    const std::size_t side = without.at("flank") == "left" ? 1 : 0;
+    double worst = 0, narrowest = 1e300;
+    for (const Json& row : rows) {
+      const Json& flank = row.at("flanks")[side];
+      worst = std::max(worst, flank.at("transmission_error").at("range_um").get<double>());
+      narrowest = std::min(narrowest, flank.at("margin_gap_um").get<double>());
+    }
+    EXPECT_NEAR(worst, error, 0.06 + 0.1 * worst) << without.dump();
+    EXPECT_NEAR(narrowest, gap, 0.6) << without.dump();
+    ++rolled;
+  }
+  EXPECT_GE(rolled, 3);
+  EXPECT_LT(found.at("removal_um").get<double>(), 60);
+}
+
 /// Where there is none it says so, with what is in the way, and writes no job.
 TEST(ContactOptimise, SaysWhenThereIsNone) {
   const TestDir dir;

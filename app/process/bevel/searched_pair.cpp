@@ -62,6 +62,15 @@ class BevelSearchedPair final : public ease_off::SearchedPair {
     return contact::bevel_search_model(asked_.pinion(), asked_.wheel(), sigma_of(side), moved, searched, options);
   }
 
+  [[nodiscard]] std::vector<Diagnostic> refused(const ease_off::FoundModifications& with) const override {
+    std::vector<Diagnostic> all;
+    for (const auto& [gear, more] : {std::pair(&asked_.pinion(), &with.on_pinion), {&asked_.wheel(), &with.on_gear}}) {
+      auto made = with_more(*gear, *more);
+      if (const auto* errors = made.refused()) all.insert(all.end(), errors->begin(), errors->end());
+    }
+    return all;
+  }
+
   [[nodiscard]] process::ValueOrErrors<std::vector<ease_off::MisalignmentRow>> rolled(
       const ease_off::FoundModifications& with, const std::vector<ease_off::NamedMisalignment>& list,
       double margin) const override {

@@ -79,8 +79,11 @@ std::vector<NamedMisalignment> corner_misalignments(const Misalignment& stands, 
 
 Result<std::vector<MisalignmentRow>> roll_rows(const RollSide& roll, const std::vector<NamedMisalignment>& list) {
   std::vector<std::optional<Result<contact::MisalignedContact>>> found(2 * list.size());
-  const WorkShare share(double(found.size()));
-  tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t k) { found[k] = roll(k % 2, list[k / 2].moved); });
+  WorkShare share(double(found.size()));
+  tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t k) {
+    const WorkShare part(share);
+    found[k] = roll(k % 2, list[k / 2].moved);
+  });
   std::vector<MisalignmentRow> rows;
   for (std::size_t k = 0; k < list.size(); ++k) {
     MisalignmentRow row{list[k], {}};

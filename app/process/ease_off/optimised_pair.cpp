@@ -84,12 +84,29 @@ Json optimised_json(const Optimised& found) {
       list.push_back(std::move(json));
     }
   const double um = found.table.pitch_radius_mm * app::kUm;
+  Json needed = Json::array();
+  for (const Needed& n : found.needed) {
+    const Modification& m = n.of.modification;
+    Json json = {{"member", n.of.on_pinion ? "pinion" : "gear"}, {"kind", to_string(m.kind)}, {"amount", m.amount_mm}};
+    json["flank"] = to_string(m.flanks);
+    if (m.zone) json["zone"] = *m.zone;
+    json["transmission_error_um"] = n.error_um;
+    json["margin_gap_um"] = n.margin_gap_mm < 1e100 ? Json(n.margin_gap_mm * app::kUm) : Json(nullptr);
+    json["wanted_gap_um"] = n.wanted_gap_mm * app::kUm;
+    needed.push_back(std::move(json));
+  }
   return {{"found", found.found},
           {"modify", found.modify},
           {"finding", found.finding},
           {"modifications", std::move(list)},
           {"keys", found.keys},
-          {"transmission_error_um", {{"worst", found.error_rad * um}, {"of_the_search", found.model_error_rad * um}}},
+          {"transmission_error_um",
+           {{"worst", found.error_rad * um},
+            {"of_the_search", found.model_error_rad * um},
+            {"least_of_the_search", found.least_error_rad * um},
+            {"nearly_equal_up_to", found.nearly_equal_rad * um}}},
+          {"removal_um", found.removal_mm * app::kUm},
+          {"without", std::move(needed)},
           {"candidates", found.judged},
           {"rounds", found.rounds},
           {"misalignments", table_json(found.table)}};
@@ -97,8 +114,20 @@ Json optimised_json(const Optimised& found) {
 
 std::string optimised_summary(const Optimised& found) {
   std::string out = "optimised: " + found.finding + "\n";
+  const double um = found.table.pitch_radius_mm * app::kUm;
   out += fmt::format("  {} candidates, rolled {} times; the search put the error at {:.4f} um\n", found.judged,
-                     found.rounds, found.model_error_rad * found.table.pitch_radius_mm * app::kUm);
+                     found.rounds, found.model_error_rad * um);
+  out += fmt::format(
+      "  errors up to {:.4f} um count as nearly equal to the least of the search, {:.4f} um: of those the least is "
+      "taken "
+      "off, at one place of a flank {:.1f} um at most\n",
+      found.nearly_equal_rad * um, found.least_error_rad * um, found.removal_mm * app::kUm);
+  for (const Needed& n : found.needed)
+    out += fmt::format(
+        "  without {}: transmission error {:.4f} um, gap at the edges {} of {:.2f} um that the models keep\n",
+        amount_text(n.of), n.error_um,
+        n.margin_gap_mm < 1e100 ? fmt::format("{:.2f}", n.margin_gap_mm * app::kUm) : "none",
+        n.wanted_gap_mm * app::kUm);
   if (!found.keys.empty()) out += (found.found ? "" : "  the best that was seen:\n") + found.keys + "\n";
   return out + page::table_text(table_page(found.table, ""));
 }

@@ -5,9 +5,17 @@
 #include <string>
 #include <vector>
 
-#include "app/process/ease_off/searched_pair.h"
+#include "app/process/ease_off/refused_amount.h"
 
 namespace toothpath::ease_off {
+
+/// What a modification is needed for, as the models say it: the pair without it alone.
+struct Needed {
+  OfMember of;
+  double error_um = 0;       ///< transmission error at the pitch radius
+  double margin_gap_mm = 0;  ///< least gap in the margins
+  double wanted_gap_mm = 0;  ///< that the models have to keep there, so that the roll keeps more than the compound
+};
 
 struct Optimised {
   bool found = false;
@@ -19,6 +27,10 @@ struct Optimised {
   MisalignmentTable table;      ///< of the pair with them: single misalignments and corners
   double error_rad = 0;         ///< greatest of the table
   double model_error_rad = 0;   ///< what the search thought it would be
+  double least_error_rad = 0;   ///< the least error of the search, whatever is taken off
+  double nearly_equal_rad = 0;  ///< errors up to here are nearly equal to it: of those the least removal was sought
+  double removal_mm = 0;        ///< the most that they take at one place of a flank
+  std::vector<Needed> needed;   ///< each of them
   long judged = 0;              ///< candidates
   int rounds = 0;               ///< of search and proof
 };

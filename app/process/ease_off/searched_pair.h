@@ -48,6 +48,8 @@ class SearchedPair {
                                                            const std::vector<contact::SearchedModification>& searched,
                                                            const contact::SearchOptions& options) const = 0;
 
+  /// What its gears refuse of these modifications, each with its place in the job; empty: they are made.
+  [[nodiscard]] virtual std::vector<Diagnostic> refused(const FoundModifications& with) const = 0;
   /// The pair with these modifications, rolled at each of these places. Refused: modifications that its gears refuse; a
   /// pair that does not meet there, each with its place in the job.
   [[nodiscard]] virtual process::ValueOrErrors<std::vector<MisalignmentRow>> rolled(

@@ -62,15 +62,18 @@ class FacePair final : public ease_off::SearchedPair {
                                       moved, searched, options);
   }
 
+  [[nodiscard]] std::vector<Diagnostic> refused(const ease_off::FoundModifications& with) const override {
+    auto made = with_more(with.on_gear);
+    auto* errors = made.refused();
+    return errors != nullptr ? std::move(*errors) : std::vector<Diagnostic>{};
+  }
+
   [[nodiscard]] process::ValueOrErrors<std::vector<ease_off::MisalignmentRow>> rolled(
       const ease_off::FoundModifications& with, const std::vector<ease_off::NamedMisalignment>& list,
       double margin) const override {
-    job::Job changed = *asked_.job;
-    auto& of_gear = std::get<face_gear::FaceGearParameters>(changed.gear).modifications;
-    of_gear.insert(of_gear.end(), with.on_gear.begin(), with.on_gear.end());
     auto on_pinion = asked_.settings.modifications;
     on_pinion.insert(on_pinion.end(), with.on_pinion.begin(), with.on_pinion.end());
-    auto made = process::make_face_gear(changed);
+    auto made = with_more(with.on_gear);
     if (auto* errors = made.refused()) return std::move(*errors);
     std::array<contact::PairSide, 2> pair;
     for (const std::size_t s : {0u, 1u}) {
@@ -92,6 +95,14 @@ class FacePair final : public ease_off::SearchedPair {
   }
 
  private:
+  /// The gear with these modifications behind its own.
+  [[nodiscard]] process::ValueOrErrors<face_gear::FaceGear> with_more(
+      const std::vector<modification::Modification>& more) const {
+    job::Job changed = *asked_.job;
+    auto& of_gear = std::get<face_gear::FaceGearParameters>(changed.gear).modifications;
+    of_gear.insert(of_gear.end(), more.begin(), more.end());
+    return process::make_face_gear(changed);
+  }
   [[nodiscard]] const face_gear::FaceGearRing& first() const { return asked_.gear->rings().front(); }
   FacePairAsked asked_;
 };

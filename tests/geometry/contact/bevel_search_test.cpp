@@ -166,6 +166,44 @@ TEST(BevelSearch, FindsWhatTryingEverythingFinds) {
   EXPECT_LE(found, best + 1e-4);
 }
 
+/// Both walls together: no amount is left that could be 0 without an error that is not nearly equal to the least one,
+/// or a margin that lacks.
+TEST(BevelSearch, NothingIsTakenThatNeedNotBe) {
+  const auto pinion = made(w1(), pinion_mill()), wheel = made(w2(), wheel_mill());
+  const auto searched = contact::searched_of_mill(wheel, false);
+  contact::SearchOptions options;
+  options.rows = options.columns = 13;
+  options.steps = 12;
+  const auto sides = models_of(pinion, wheel, {{}, {0.01, 0, 0, 0}, {-0.01, 0, 0, 0}}, searched, options);
+  const auto found = contact::search_modifications(sides, searched, options);
+  ASSERT_TRUE(found.inside);
+  const auto judged = [&](const std::vector<int>& units) {
+    std::vector<double> amounts;
+    for (const int u : units) amounts.push_back(u * options.unit_mm);
+    bool within = true;
+    for (std::size_t s = 0; s < sides.size(); ++s)
+      for (const auto& model : sides[s].models) {
+        const auto of_model = model.judge(amounts, found.lengths);
+        within = within && of_model.error_mm <= options.nearly_equal_to(found.least_error_mm[s]) &&
+                 of_model.margin_gap_mm >= options.compound_mm + 2e-9;
+      }
+    return within;
+  };
+  int needed = 0;
+  for (std::size_t n = 0; n < searched.size(); ++n) {
+    if (found.units[n] == 0) continue;
+    ++needed;
+    for (const int left : {0, found.units[n] - (found.units[n] > 0 ? 1 : -1)}) {
+      auto less = found.units;
+      less[n] = left;
+      EXPECT_FALSE(judged(less)) << to_string(searched[n].kind) << " need not be more than " << left << " units";
+    }
+  }
+  std::printf("  %d of %zu are needed; at most %.1f um are taken\n", needed, searched.size(),
+              found.removal.most_mm * 1e3);
+  EXPECT_GE(needed, 2);
+}
+
 /// Lead crowning alone cannot bring the pattern off the tips: it says so, and which edge is in the way.
 TEST(BevelSearch, SaysWhenThereIsNone) {
   const auto pinion = made(w1(), pinion_mill()), wheel = made(w2(), wheel_mill());

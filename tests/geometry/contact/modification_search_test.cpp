@@ -137,5 +137,59 @@ TEST(ModificationSearch, SaysWhenThereIsNone) {
   for (const int u : found.units) EXPECT_LE(std::abs(u), 40);
 }
 
+/// Of nearly equal errors the least removal: what does nothing is gone, and no amount is left that could be 0 or a unit
+/// less, with end reliefs to choose from and with useless ones planted in the start.
+TEST(ModificationSearch, NothingIsTakenThatNeedNotBe) {
+  const face_gear::FaceGear gear = modified_spur();
+  auto searched = crowning_and_relief();
+  searched.push_back({false, Kind::end_relief, {}, false, {0.6, 1.2}});
+  searched.push_back({false, Kind::root_relief, 1, false, {1.0}});  // of a ring that the gear has not
+  contact::SearchOptions options;
+  options.rows = options.columns = 17;
+  options.steps = 12;
+  options.compound_mm = 0.004;
+  for (const int side : {1, -1}) {
+    std::vector<contact::SearchedSide> sides(1);
+    sides[0] = {side, {}, options.compound_mm};
+    for (const contact::Misalignment& moved :
+         {contact::Misalignment{}, contact::Misalignment{0.01, 0, 0.0004}, contact::Misalignment{-0.01, 0, -0.0004}}) {
+      auto model = contact::SearchModel::make(gear, side, 20, {}, moved, searched, options);
+      ASSERT_TRUE(model) << model.error().message;
+      sides[0].models.push_back(std::move(*model));
+    }
+    auto planted = contact::search_modifications(sides, searched, options);
+    std::vector<contact::SearchResult> results = {planted};
+    planted.units[4] = planted.units[5] = 1000;
+    results.push_back(contact::search_modifications(sides, searched, options, &planted));
+    for (const auto& found : results) {
+      ASSERT_TRUE(found.inside);
+      const double most = options.nearly_equal_to(found.least_error_mm[0]);
+      EXPECT_LE(found.error_mm, most);
+      EXPECT_EQ(found.units[5], 0);
+      EXPECT_LT(found.removal.most_mm, 0.06);
+      std::printf("  side %+d: error %.3f um, least %.3f, removal %.1f um:", side, found.error_mm * 1e3,
+                  found.least_error_mm[0] * 1e3, found.removal.most_mm * 1e3);
+      for (const int u : found.units) std::printf(" %.1f", u / 10.0);
+      std::printf("\n");
+      EXPECT_GE(found.without.size(), 2u);
+      for (std::size_t n = 0; n < searched.size(); ++n)
+        for (const int left : {0, found.units[n] - (found.units[n] > 0 ? 1 : -1)}) {
+          if (found.units[n] == 0) continue;
+          std::vector<double> amounts;
+          for (const int u : found.units) amounts.push_back(u * options.unit_mm);
+          amounts[n] = left * options.unit_mm;
+          double error = 0, gap = 1;
+          for (const auto& model : sides[0].models) {
+            const auto judged = model.judge(amounts, found.lengths);
+            error = std::max(error, judged.error_mm);
+            gap = std::min(gap, judged.margin_gap_mm);
+          }
+          EXPECT_TRUE(error > most || gap < options.compound_mm + 2e-9)
+              << to_string(searched[n].kind) << " need not be more than " << left << " units: error " << error;
+        }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace toothpath::test
