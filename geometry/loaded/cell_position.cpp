@@ -1,7 +1,10 @@
 #include "geometry/loaded/cell_position.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "geometry/base/angle.h"
 #include "geometry/loaded/carriers.h"
@@ -64,7 +67,7 @@ class Cells {
         if (!changed) return changed.error();
         if (!*changed) break;
       }
-      if (fit == kMostFits) return fail("the contact at {:.4f} deg outgrows its cells", degrees(phi_));
+      if (fit == kMostFits) return fail("{}", outgrown());
       if (side > 1) drop_idle();
     }
     return last_;
@@ -237,6 +240,18 @@ class Cells {
   [[nodiscard]] bool misses_first(const ToothWindow& w, double approach) const {
     const double first = first_of(w.site), seen = first_touch(w);
     return first < approach && seen - first > approach - seen;
+  }
+
+  /// Which window no fit holds, and what would help.
+  [[nodiscard]] std::string outgrown() const {
+    const auto widest = std::max_element(windows_.begin(), windows_.end(),
+                                         [](const auto& a, const auto& b) { return a.site.half_y < b.site.half_y; });
+    return fmt::format(
+        "the contact at {:.4f} deg outgrows its cells: after {} fits the windows still do not hold what presses, the "
+        "longest {:.3f} x {:.3f} mm (ring {}, tooth {}). A smaller torque, or reliefs that begin less abruptly would "
+        "help",
+        degrees(phi_), kMostFits, 2 * widest->site.half_x, 2 * widest->site.half_y, ring_of(*widest),
+        widest->site.tooth);
   }
 
   /// Draws the windows around what presses. False: they fit already. @param only_rim  widens only what is too narrow
