@@ -179,6 +179,12 @@ class BevelGearBuilder {
       g.limits_.top_land_mm = radius * tooth * std::sqrt(g.R_i_ / g.R_0_);
     }
     judge_form();
+    if (refusals_.empty() && !(g.limits_.top_land_mm > 0))
+      refuse(
+          "addendum",
+          "addendum = {:.4f}: the walls as they are cut meet below the tip at the small end (top land {:.4f} mm, must "
+          "be positive): the tooth is pointed; a smaller addendum or less backlash would do",
+          h, g.limits_.top_land_mm);
     warn_of_thin_tips(g.limits_, g.warnings_);
   }
 

@@ -319,6 +319,28 @@ TEST(BevelMesh, ClosedOutwardAndOnTheWalls) {
   }
 }
 
+// A gear whose walls meet below its tips is refused, also where the equivalent gear still has a land.
+TEST(BevelInvariants, ATallerToothIsRefusedBeforeItsWallsMeet) {
+  auto p = bevel_test::w1();
+  auto mill = bevel_test::pinion_mill();
+  const auto made = [&](double addendum) {
+    p.addendum_mm = mill.rack_depth_mm = addendum, mill.profile_height_mm = addendum + 0.7;
+    return bevel_gear::BevelGear::make(p, mill);
+  };
+  double low = 4.1, high = 12;
+  ASSERT_TRUE(made(low).value_if());
+  while (high - low > 1e-6) (made((low + high) / 2).value_if() ? low : high) = (low + high) / 2;
+  const auto tall = made(low), pointed = made(high);
+  ASSERT_TRUE(tall.value_if());
+  EXPECT_GT(tall.value_if()->limits().top_land_mm, 0);
+  EXPECT_LT(tall.value_if()->limits().top_land_mm, 1e-5);
+  EXPECT_GT(bevel_top_land(*tall.value_if(), tall.value_if()->R_i()), 0.05);
+  ASSERT_NE(pointed.refused(), nullptr);
+  EXPECT_EQ(pointed.refused()->front().key, "addendum");
+  EXPECT_NE(pointed.refused()->front().diagnostic.message.find("the walls as they are cut meet below the tip"),
+            std::string::npos);
+}
+
 // The tip between the two walls of a tooth as the solid mill leaves them, against what the limits say. The equivalent
 // gear is a quarter off it at 8 teeth.
 TEST(BevelInvariants, TopLandIsThatOfTheCutTooth) {
