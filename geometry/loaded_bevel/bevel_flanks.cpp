@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -24,6 +25,19 @@ constexpr double kMargin = 1.02;    // of the first rectangle around the flank
 constexpr double kOnEdge = 1e-9;    // mm: places that slide along an edge lie on it
 constexpr int kSlides = 26;         // halvings of the steps along edges
 constexpr double kEarlier = 1e-11;  // rad: a place that is met less earlier is no better
+
+/// Turns at the places of the grid; infinite where nothing touches.
+using Turns = std::array<std::array<double, kColumns>, kRows>;
+
+/// No place of the grid beside this one is lower.
+bool is_low(const Turns& turns, int row, int column) {
+  const auto at = [&](int i, int j) { return turns[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]; };
+  if (!std::isfinite(at(row, column))) return false;
+  for (int i = std::max(0, row - 1); i <= std::min(kRows - 1, row + 1); ++i)
+    for (int j = std::max(0, column - 1); j <= std::min(kColumns - 1, column + 1); ++j)
+      if (at(i, j) < at(row, column)) return false;
+  return true;
+}
 
 }  // namespace
 
@@ -98,19 +112,24 @@ BevelFlanks::Tooth BevelFlanks::look_at(int half, int tooth) const {
   t.half = half, t.tooth = tooth, t.least = std::numeric_limits<double>::infinity();
   BevelInverse on_pinion;
   const double low = pair.lowest(half), high = pair.highest();
+  Turns turns;
+  for (auto& row : turns) row.fill(std::numeric_limits<double>::infinity());
+  const auto ell_at = [&](int j) { return own.ell_from + (own.ell_to - own.ell_from) * j / (kColumns - 1); };
+  const auto height_at = [&](int i) { return low + (high - low) * i / (kRows - 1); };
   for (int i = 0; i < kRows; ++i)
     for (int j = 0; j < kColumns; ++j) {
-      const auto found = bevel_gear::bevel_inverse(
-          wall, own.ell_from + (own.ell_to - own.ell_from) * j / (kColumns - 1), low + (high - low) * i / (kRows - 1));
+      const auto found = bevel_gear::bevel_inverse(wall, ell_at(j), height_at(i));
       if (!found) continue;
       t.grid.push_back(wheel_place(half, tooth, found->beta, found->p));
       const auto met = touch(half, tooth, t.grid.back(), on_pinion);
       t.turned.push_back(met && met->on_flank ? turned(tooth, *met) : kNothing);
-      if (!(t.turned.back() < t.least)) continue;
-      t.least = t.turned.back();
-      const auto at = bevel_gear::cone_point(t.grid.back().blank, pair.wheel().sin_delta(), pair.wheel().cos_delta());
-      t.ell = at.ell, t.height = at.height;
+      if (std::isnan(t.turned.back())) continue;
+      turns[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = t.turned.back();
+      if (t.turned.back() < t.least) t.least = t.turned.back(), t.ell = ell_at(j), t.height = height_at(i);
     }
+  for (int i = 0; i < kRows; ++i)
+    for (int j = 0; j < kColumns; ++j)
+      if (is_low(turns, i, j)) t.low.emplace_back(ell_at(j), height_at(i));
   return t;
 }
 
@@ -149,14 +168,21 @@ std::optional<double> BevelFlanks::turned_within(const Tooth& t, Vec2& place, Be
   return std::nullopt;
 }
 
-/// Down from the best place of the grid. Edges of both flanks lie askew in it, so steps that leave a flank slide along
-/// its edge: what touches first is mostly a corner of such edges.
+/// Flanks can come near at several places, such as both ends of a tooth: down from each.
 void BevelFlanks::refine(Tooth& t) const {
+  for (const Vec2& from : t.low) go_down(t, from);
+}
+
+/// Edges of both flanks lie askew in the grid, so steps that leave a flank slide along its edge: what touches first is
+/// mostly a corner of such edges.
+void BevelFlanks::go_down(Tooth& t, const Vec2& from) const {
   const bevel_gear::BevelHalf& own = pair_.pair.wheel().halves()[static_cast<std::size_t>(t.half)];
   Vec2 step((own.ell_to - own.ell_from) / (kColumns - 1),
             (pair_.pair.highest() - pair_.pair.lowest(t.half)) / (kRows - 1)),
-      best(t.ell, t.height);
+      best = from;
   BevelInverse start;
+  auto least = turned_within(t, best, start);
+  if (!least) return;
   for (int n = 0; n < kSlides;) {
     bool moved = false;
     const Vec2 centre = best;
@@ -165,13 +191,13 @@ void BevelFlanks::refine(Tooth& t) const {
         if (i == 0 && j == 0) continue;
         Vec2 place = centre + Vec2(i * step.x(), j * step.y());
         const auto here = turned_within(t, place, start);
-        if (here && *here < t.least - kEarlier) t.least = *here, best = place, moved = true;
+        if (here && *here < *least - kEarlier) least = *here, best = place, moved = true;
       }
     // On along what is found, by steps as long as at the beginning again.
     if (!moved) step /= 2, ++n;
     else if (n > 0) step *= 2, --n;
   }
-  t.ell = best.x(), t.height = best.y();
+  if (*least < t.least) t.least = *least, t.ell = best.x(), t.height = best.y();
 }
 
 std::optional<BevelFlanks::WheelPlace> BevelFlanks::above(const CellSite& site, int half, const Vec2& at,

@@ -35,6 +35,7 @@ class BevelFlanks final : public loaded::CellFlanks {
     std::vector<WheelPlace> grid;  ///< row-major from the lowest row; where the wheel has its flank
     std::vector<double> turned;    ///< sigma times the turn of the pinion beyond the exact ratio; NaN: it is not there
     double least = 0, ell = 0, height = 0;  ///< least of `turned`, and where on the wheel
+    std::vector<Vec2> low;                  ///< places (ell, height) of the grid about which no other is lower
   };
   [[nodiscard]] double turn_of_wheel(int tooth) const;
   [[nodiscard]] WheelPlace wheel_place(int half, int tooth, double beta, double p) const;
@@ -43,7 +44,8 @@ class BevelFlanks final : public loaded::CellFlanks {
                                                          bevel_gear::BevelInverse& start) const;
   [[nodiscard]] double turned(int tooth, const contact::BevelTouch& touch) const;
   [[nodiscard]] Tooth look_at(int half, int tooth) const;
-  void refine(Tooth& tooth) const;  ///< its least between the places of the grid
+  void refine(Tooth& tooth) const;                     ///< its least between the places of the grid
+  void go_down(Tooth& tooth, const Vec2& from) const;  ///< the same from one of them
   /// sigma times the turn of the pinion beyond the exact ratio where it meets the place (ell, height) of the wheel; a
   /// place beyond an edge of either flank moves onto it first. Empty: there is none.
   [[nodiscard]] std::optional<double> turned_within(const Tooth& tooth, Vec2& place,
