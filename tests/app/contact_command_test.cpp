@@ -213,7 +213,7 @@ TEST(ContactCommand, AFailedRunLeavesEverythingAsItWas) {
   // Ended by a signal while it computes.
   older();
   Launch launch;
-  launch.arguments = {"contact", good, "--pinion-teeth", "23", "--out", out};
+  launch.arguments = {"contact", good, "--pinion-teeth", "23", "--torque", "5", "--positions", "24", "--out", out};
   launch.signal_number = SIGTERM;
   launch.signal_after_ms = 300;
   const Finished run = run_program(launch);
