@@ -29,6 +29,11 @@ struct CutFlanks {
   std::vector<std::pair<std::string, double>> stages;  ///< milled: seconds of the run
 };
 
+/// "as cut"; "measured" where the flanks are those of a measurement.
+[[nodiscard]] inline const char* words_of_route(const std::string& route) {
+  return route == "measured" ? "measured" : "as cut";
+}
+
 /// Flank patches of a cut surface after the last operation.
 [[nodiscard]] std::vector<CutFlanks::Flank> flanks_of(const std::vector<proof::SurfaceGrid>& surface);
 

@@ -38,8 +38,6 @@ struct PairAnalysis {
 
 constexpr std::array<const char*, 2> kWall = {"L", "U"};
 
-const char* words_of_cut(const std::string& route) { return route == "measured" ? "measured" : "as cut"; }
-
 /// A wall that was rolled, as drawn or as cut.
 struct RolledWall {
   const contact::BevelContact& rolled;
@@ -51,7 +49,7 @@ std::vector<RolledWall> rolled_walls(const PairAnalysis& a) {
   std::vector<RolledWall> out;
   for (std::size_t w = 0; w < a.walls.size(); ++w) out.push_back({a.walls[w], kWall[w], "exact", kWall[w]});
   for (std::size_t w = 0; w < a.cut.size(); ++w)
-    out.push_back({a.cut[w], kWall[w], "cut", fmt::format("{}, {}", kWall[w], words_of_cut(a.route))});
+    out.push_back({a.cut[w], kWall[w], "cut", fmt::format("{}, {}", kWall[w], process::words_of_route(a.route))});
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/job/file.h"
+#include "app/process/cut_flanks.h"
 #include "app/process/under_load/loaded_side.h"
 #include "geometry/contact/bevel_pattern_place.h"
 #include "geometry/decks/bevel_deck.h"
@@ -70,8 +71,8 @@ process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(
     if (!left) continue;
     const auto rough = loaded_bevel::with_left(*pair, left);
     if (!rough) return std::vector{process::located(job, "gear", rough.error())};
-    auto worn = under_load::loaded_side(
-        *rough, carried, sigma, fmt::format("{}, {}", wall_of(sigma), route == "measured" ? route : "as cut"), load);
+    auto worn = under_load::loaded_side(*rough, carried, sigma,
+                                        fmt::format("{}, {}", wall_of(sigma), process::words_of_route(route)), load);
     if (!worn) return std::vector{process::located(job, "contact.load", worn.error())};
     worn->as_cut = true;
     under_load::add_side(found, std::move(*worn), false);

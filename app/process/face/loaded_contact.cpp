@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/job/file.h"
+#include "app/process/cut_flanks.h"
 #include "app/process/under_load/loaded_side.h"
 #include "geometry/decks/rows_deck.h"
 
@@ -124,8 +125,8 @@ process::ValueOrErrors<under_load::LoadedContact> analyse_loaded(
     if (of_side.empty()) continue;
     loaded::LoadedPair rough = *pair;
     rough.options.gap = [&](const loaded::Segment& s) { return gap_of_cut(of_side, s); };
-    auto worn = under_load::loaded_side(
-        rough, carried, side, fmt::format("flank {:+}, {}", side, route == "measured" ? "measured" : "as cut"), load);
+    auto worn = under_load::loaded_side(rough, carried, side,
+                                        fmt::format("flank {:+}, {}", side, process::words_of_route(route)), load);
     if (!worn) return std::vector{process::located(job, "contact.load", worn.error())};
     worn->as_cut = true;
     under_load::add_side(found, std::move(*worn), false);
