@@ -11,6 +11,7 @@ namespace toothpath::contact {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr int kHalvings = 14;  // of the grid's steps: some tenths of a micrometre along the flank
 
 /// One wall of the pair on a grid of the wheel.
 class Roll {
@@ -105,29 +106,29 @@ class Roll {
     m.at = at_a < at_b ? a : b;
   }
 
-  /// Least error of one pair at every position: grid, then downhill between the grid's places.
+  /// Least error of one pair at every position: grid, then between the grid's places.
   void pair_error() {
+    std::vector<BevelNear> grid;
     for (int k = first_; k <= last_; ++k) {
       Least best;
-      for (std::size_t h = 0; h < meetings_.size(); ++h)
+      for (std::size_t h = 0; h < meetings_.size(); ++h) {
+        grid.clear();
         for (std::size_t p = 0; p < meetings_[h].size(); ++p) {
-          const Meeting& m = meetings_[h][p];
-          const int at = k - m.first;
-          if (at < 0 || at >= static_cast<int>(m.error.size())) continue;
-          const double e = m.error[static_cast<std::size_t>(at)];
-          if (!(e < best.error)) continue;
-          best = {e, static_cast<int>(h), patterns_[h].places[p].ell, patterns_[h].places[p].height};
+          const BevelPlace& place = patterns_[h].places[p];
+          grid.push_back({error_of(meetings_[h][p], k), place.ell, place.height});
         }
-      pair_least_.push_back(std::isinf(best.error) ? best : downhill(best, k * step_));
+        const auto first = pair_.first_met(static_cast<int>(h), sigma_, k * step_, grid, options_.columns, kHalvings);
+        if (first.error < best.error) best = {first.error, static_cast<int>(h), first.ell, first.height};
+      }
+      pair_least_.push_back(best);
     }
   }
-
-  Least downhill(Least at, double phi_2) const {
-    const auto& h = pair_.wheel().halves()[static_cast<std::size_t>(at.half)];
-    const BevelNear found = pair_.downhill(at.half, sigma_, phi_2, {at.error, at.ell, at.height},
-                                           (h.ell_to - h.ell_from) / (options_.columns - 1),
-                                           (pair_.highest() - pair_.lowest(at.half)) / (options_.rows - 1));
-    return {found.error, at.half, found.ell, found.height};
+  /// Of a place at a position; infinite where it is not on the pinion's flank.
+  static double error_of(const Meeting& m, int k) {
+    const int at = k - m.first;
+    const bool known = at >= 0 && at < static_cast<int>(m.error.size());
+    const double e = known ? m.error[static_cast<std::size_t>(at)] : kNothing;
+    return std::isnan(e) ? std::numeric_limits<double>::infinity() : e;
   }
 
   [[nodiscard]] const Least* pair_at(int k) const {

@@ -85,9 +85,15 @@ class BevelPair {
   /// turn_at.
   [[nodiscard]] std::optional<double> error_at(int half, int sigma, const Vec3& point, double phi_2,
                                                bevel_gear::BevelInverse& start) const;
-  /// From a place of the wheel's flank to the nearest one that the pinion meets earlier than all about it.
-  /// @param along, up  first steps of the search, mm, along the face and up the profile; it ends with their 8000th part
-  [[nodiscard]] BevelNear downhill(int half, int sigma, double phi_2, BevelNear at, double along, double up) const;
+  /// The place of the wheel's flank that the pinion meets first: down from every place of a grid about which none is
+  /// met earlier, since flanks come near at several places, such as both ends of a tooth. Edges of both flanks lie
+  /// askew to each other, so steps that leave a flank slide along its edge: what touches first is mostly a corner of
+  /// such edges.
+  /// @param grid      row-major from the lowest row; error infinite: the pinion does not meet it
+  /// @param halvings  of the grid's steps: to such a part of them the place is found
+  /// Error infinite: it meets none.
+  [[nodiscard]] BevelNear first_met(int half, int sigma, double phi_2, const std::vector<BevelNear>& grid, int columns,
+                                    int halvings) const;
 
   /// Place on the wheel's wall; empty outside of it.
   [[nodiscard]] std::optional<BevelPlace> wheel_place(int half, int sigma, double ell, double height) const;
@@ -123,6 +129,11 @@ class BevelPair {
   [[nodiscard]] std::optional<BevelTouch> touch_of(int half, int sigma, const Vec3& point,
                                                    const bevel_gear::ConePoint& q, bool on_flank,
                                                    bevel_gear::BevelInverse& start) const;
+  /// error_at of the place (ell, height) of the wheel; one beyond an edge of either flank moves onto it first. Empty:
+  /// there is none.
+  [[nodiscard]] std::optional<double> error_within(int half, int sigma, double phi_2, Vec2& place,
+                                                   bevel_gear::BevelInverse& start) const;
+  [[nodiscard]] BevelNear downhill(int half, int sigma, double phi_2, BevelNear at, Vec2 step, int halvings) const;
   [[nodiscard]] bool within_edges(const bevel_gear::BevelHalf& half, const bevel_gear::ConePoint& q) const;
   const bevel_gear::BevelGear *pinion_ = nullptr, *wheel_ = nullptr;
   std::vector<bevel_gear::BevelHalf> pinion_halves_;  ///< with the change

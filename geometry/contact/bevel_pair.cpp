@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "geometry/base/angle.h"
@@ -10,6 +11,12 @@ namespace toothpath::contact {
 namespace {
 
 constexpr double kAtEdge = 1e-9;  // of the cone distance: points on an edge count as on the flank
+constexpr double kOnEdge = 1e-9;  // mm: places that slide along an edge lie on it
+constexpr double kWay = 1e-4;     // mm: step of the derivatives with which they come back to it
+constexpr int kMostRounds = 10;   // of Newton
+constexpr double kBelow =
+    2;  // a place between those of a grid lies at most so many differences to its neighbours below
+constexpr double kEarlier = 1e-11;  // rad: a place that is met less earlier is no better
 
 Mat3 turn_about_z(double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix(); }
 
@@ -124,29 +131,89 @@ std::optional<double> BevelPair::error_at(int half, int sigma, const Vec3& point
   return sigma * wrapped(*turn - nominal_turn(phi_2));
 }
 
-BevelNear BevelPair::downhill(int half, int sigma, double phi_2, BevelNear at, double along, double up) const {
-  const auto& h = wheel_->halves()[static_cast<std::size_t>(half)];
-  const double low = lowest(half), high = highest();
-  bevel_gear::BevelInverse start;
-  for (int n = 0; n < 14; ++n, along *= 0.5, up *= 0.5)
-    for (bool moved = true; moved;) {
-      moved = false;
-      const BevelNear centre = at;
-      for (int i = -1; i <= 1; ++i)
-        for (int j = -1; j <= 1; ++j) {
-          if (i == 0 && j == 0) continue;
-          const double ell = std::clamp(centre.ell + j * along, h.ell_from, h.ell_to),
-                       height = std::clamp(centre.height + i * up, low, high);
-          const auto place = wheel_place(half, sigma, ell, height);
-          if (!place) continue;
-          const auto e = error_at(half, sigma, place->point, phi_2, start);
-          if (e && *e < at.error - 1e-14) {
-            at = {*e, ell, height};
-            moved = true;
-          }
-        }
+std::optional<double> BevelPair::error_within(int half, int sigma, double phi_2, Vec2& place,
+                                              bevel_gear::BevelInverse& start) const {
+  const bevel_gear::BevelHalf &own = wheel_->halves()[static_cast<std::size_t>(half)],
+                              &mate = pinion_->halves()[static_cast<std::size_t>(half)];
+  const auto met_at = [&](const Vec2& at) -> std::optional<std::pair<BevelPlace, Vec2>> {
+    const auto on_wheel = wheel_place(half, sigma, at.x(), at.y());
+    if (!on_wheel || on_wheel->p < own.wall(sigma).cutter.p_B) return std::nullopt;
+    const auto q = on_pinion(on_wheel->point, phi_2);
+    return std::pair(*on_wheel, Vec2(q.ell, q.height));
+  };
+  for (int round = 0; round < kMostRounds; ++round) {
+    place = Vec2(std::clamp(place.x(), own.ell_from, own.ell_to), std::min(place.y(), highest()));
+    const auto here = met_at(place);
+    if (!here) return std::nullopt;
+    const Vec2& q = here->second;
+    const Vec2 back(std::clamp(q.x(), mate.ell_from, mate.ell_to) - q.x(),
+                    std::min(q.y(), pinion_->parameters().addendum_mm) - q.y());
+    if (back.norm() < kOnEdge) {
+      const auto met = touch(half, sigma, here->first.point, phi_2, start);
+      if (!met) return std::nullopt;
+      return sigma * wrapped(met->turn - nominal_turn(phi_2));
     }
+    const auto along = met_at(place - Vec2(kWay, 0)), up = met_at(place - Vec2(0, kWay));
+    if (!along || !up) return std::nullopt;
+    Eigen::Matrix2d J;
+    J.col(0) = (q - along->second) / kWay, J.col(1) = (q - up->second) / kWay;
+    const Vec2 step = J.inverse() * back;
+    if (!step.allFinite() || step.norm() > wheel_->parameters().outer_transverse_module_mm) return std::nullopt;
+    place += step;
+  }
+  return std::nullopt;
+}
+
+BevelNear BevelPair::downhill(int half, int sigma, double phi_2, BevelNear at, Vec2 step, int halvings) const {
+  Vec2 best(at.ell, at.height);
+  bevel_gear::BevelInverse start;
+  for (int halved = 0; halved < halvings;) {
+    bool moved = false;
+    const Vec2 centre = best;
+    for (int i = -1; i <= 1; ++i)
+      for (int j = -1; j <= 1; ++j) {
+        if (i == 0 && j == 0) continue;
+        Vec2 place = centre + Vec2(i * step.x(), j * step.y());
+        const auto e = error_within(half, sigma, phi_2, place, start);
+        if (e && *e < at.error - kEarlier) at = {*e, place.x(), place.y()}, best = place, moved = true;
+      }
+    // On along what is found, by steps as long as at the beginning again.
+    if (!moved) step /= 2, ++halved;
+    else if (halved > 0) step *= 2, --halved;
+  }
   return at;
+}
+
+BevelNear BevelPair::first_met(int half, int sigma, double phi_2, const std::vector<BevelNear>& grid, int columns,
+                               int halvings) const {
+  const bevel_gear::BevelHalf& own = wheel_->halves()[static_cast<std::size_t>(half)];
+  const int rows = static_cast<int>(grid.size()) / columns;
+  const Vec2 step((own.ell_to - own.ell_from) / (columns - 1), (highest() - lowest(half)) / (rows - 1));
+  const auto at = [&](int row, int column) -> const BevelNear& {
+    return grid[static_cast<std::size_t>(row * columns + column)];
+  };
+  // Low places, and how far below them there may be lower ones.
+  std::vector<std::pair<BevelNear, double>> low;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      const double here = at(row, column).error;
+      double most = 0;
+      bool lowest_of_all = std::isfinite(here);
+      for (int i = std::max(0, row - 1); i <= std::min(rows - 1, row + 1); ++i)
+        for (int j = std::max(0, column - 1); j <= std::min(columns - 1, column + 1); ++j) {
+          lowest_of_all = lowest_of_all && at(i, j).error >= here;
+          if (std::isfinite(at(i, j).error)) most = std::max(most, at(i, j).error - here);
+        }
+      if (lowest_of_all) low.emplace_back(at(row, column), kBelow * most);
+    }
+  std::stable_sort(low.begin(), low.end(), [](const auto& a, const auto& b) { return a.first.error < b.first.error; });
+  BevelNear first{std::numeric_limits<double>::infinity(), 0, 0};
+  for (const auto& [from, below] : low) {
+    if (from.error - below > first.error) continue;
+    const BevelNear found = downhill(half, sigma, phi_2, from, step, halvings);
+    if (found.error < first.error) first = found;
+  }
+  return first;
 }
 
 std::optional<BevelPlace> BevelPair::wheel_place(int half, int sigma, double ell, double height) const {

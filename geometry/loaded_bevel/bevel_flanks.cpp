@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -18,26 +17,11 @@ using loaded::CellSite;
 
 constexpr int kColumns = 17, kRows = 9;  // of the grid on which teeth are looked at
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kBend = 0.02;      // of the module: step for relative curvatures
-constexpr double kFlat = 1e-6;      // 1/mm: less bent flanks count as so bent
-constexpr double kAtEdge = 1e-9;    // of the cone distance
-constexpr double kMargin = 1.02;    // of the first rectangle around the flank
-constexpr double kOnEdge = 1e-9;    // mm: places that slide along an edge lie on it
-constexpr int kSlides = 26;         // halvings of the steps along edges
-constexpr double kEarlier = 1e-11;  // rad: a place that is met less earlier is no better
-
-/// Turns at the places of the grid; infinite where nothing touches.
-using Turns = std::array<std::array<double, kColumns>, kRows>;
-
-/// No place of the grid beside this one is lower.
-bool is_low(const Turns& turns, int row, int column) {
-  const auto at = [&](int i, int j) { return turns[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]; };
-  if (!std::isfinite(at(row, column))) return false;
-  for (int i = std::max(0, row - 1); i <= std::min(kRows - 1, row + 1); ++i)
-    for (int j = std::max(0, column - 1); j <= std::min(kColumns - 1, column + 1); ++j)
-      if (at(i, j) < at(row, column)) return false;
-  return true;
-}
+constexpr double kBend = 0.02;    // of the module: step for relative curvatures
+constexpr double kFlat = 1e-6;    // 1/mm: less bent flanks count as so bent
+constexpr double kAtEdge = 1e-9;  // of the cone distance
+constexpr int kHalvings = 26;     // of the grid's steps, to where a tooth is met first
+constexpr double kMargin = 1.02;  // of the first rectangle around the flank
 
 }  // namespace
 
@@ -66,15 +50,17 @@ BevelFlanks::BevelFlanks(const LoadedBevelPair& pair, double phi_1) : pair_(pair
   const int most = 3 + pair.pair.wheel().parameters().teeth / 4;
   for (int h = 0; h < static_cast<int>(pair.halves.size()); ++h)
     for (int j = -most; j <= most; ++j)
-      if (Tooth t = look_at(h, j); std::isfinite(t.least)) teeth.push_back(std::move(t));
+      if (Tooth t = look_at(h, j); std::isfinite(t.first.error)) teeth.push_back(std::move(t));
   if (teeth.empty()) return;
   const auto first = [&] {
-    return std::min_element(teeth.begin(), teeth.end(), [](const auto& a, const auto& b) { return a.least < b.least; })
-        ->least;
+    return std::min_element(teeth.begin(), teeth.end(),
+                            [](const auto& a, const auto& b) { return a.first.error < b.first.error; })
+        ->first.error;
   };
   const double about = first();
-  std::erase_if(teeth, [&](const Tooth& t) { return (t.least - about) * t.grid.front().lever_1 > kFarthestGap; });
-  for (Tooth& t : teeth) refine(t);
+  std::erase_if(teeth, [&](const Tooth& t) { return (t.first.error - about) * t.grid.front().lever_1 > kFarthestGap; });
+  for (Tooth& t : teeth)
+    t.first = pair.pair.first_met(t.half, pair.sigma, turn_of_wheel(t.tooth), t.near, kColumns, kHalvings);
   first_ = first();
   for (const Tooth& t : teeth) add(t);
 }
@@ -109,95 +95,25 @@ BevelFlanks::Tooth BevelFlanks::look_at(int half, int tooth) const {
   const bevel_gear::BevelHalf& own = pair.wheel().halves()[static_cast<std::size_t>(half)];
   const auto& wall = own.wall(pair_.sigma);
   Tooth t;
-  t.half = half, t.tooth = tooth, t.least = std::numeric_limits<double>::infinity();
+  t.half = half, t.tooth = tooth;
   BevelInverse on_pinion;
   const double low = pair.lowest(half), high = pair.highest();
-  Turns turns;
-  for (auto& row : turns) row.fill(std::numeric_limits<double>::infinity());
-  const auto ell_at = [&](int j) { return own.ell_from + (own.ell_to - own.ell_from) * j / (kColumns - 1); };
-  const auto height_at = [&](int i) { return low + (high - low) * i / (kRows - 1); };
   for (int i = 0; i < kRows; ++i)
     for (int j = 0; j < kColumns; ++j) {
-      const auto found = bevel_gear::bevel_inverse(wall, ell_at(j), height_at(i));
+      t.near.push_back({std::numeric_limits<double>::infinity(),
+                        own.ell_from + (own.ell_to - own.ell_from) * j / (kColumns - 1),
+                        low + (high - low) * i / (kRows - 1)});
+      contact::BevelNear& near = t.near.back();
+      const auto found = bevel_gear::bevel_inverse(wall, near.ell, near.height);
       if (!found) continue;
       t.grid.push_back(wheel_place(half, tooth, found->beta, found->p));
       const auto met = touch(half, tooth, t.grid.back(), on_pinion);
       t.turned.push_back(met && met->on_flank ? turned(tooth, *met) : kNothing);
       if (std::isnan(t.turned.back())) continue;
-      turns[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = t.turned.back();
-      if (t.turned.back() < t.least) t.least = t.turned.back(), t.ell = ell_at(j), t.height = height_at(i);
+      near.error = t.turned.back();
+      if (near.error < t.first.error) t.first = near;
     }
-  for (int i = 0; i < kRows; ++i)
-    for (int j = 0; j < kColumns; ++j)
-      if (is_low(turns, i, j)) t.low.emplace_back(ell_at(j), height_at(i));
   return t;
-}
-
-std::optional<double> BevelFlanks::turned_within(const Tooth& t, Vec2& place, BevelInverse& start) const {
-  const contact::BevelPair& pair = pair_.pair;
-  const auto half = static_cast<std::size_t>(t.half);
-  const bevel_gear::BevelHalf &own = pair.wheel().halves()[half], &mate = pair.pinion().halves()[half];
-  const double phi_2 = turn_of_wheel(t.tooth);
-  const auto on_pinion = [&](const Vec2& at) -> std::optional<std::pair<contact::BevelPlace, Vec2>> {
-    const auto on_wheel = pair.wheel_place(t.half, pair_.sigma, at.x(), at.y());
-    if (!on_wheel || on_wheel->p < own.wall(pair_.sigma).cutter.p_B) return std::nullopt;
-    const auto q = pair.on_pinion(on_wheel->point, phi_2);
-    return std::pair(*on_wheel, Vec2(q.ell, q.height));
-  };
-  constexpr double kWay = 1e-4;  // mm: step of the derivatives
-  for (int round = 0; round < 10; ++round) {
-    place = Vec2(std::clamp(place.x(), own.ell_from, own.ell_to), std::min(place.y(), pair.highest()));
-    const auto here = on_pinion(place);
-    if (!here) return std::nullopt;
-    const Vec2& q = here->second;
-    const Vec2 back(std::clamp(q.x(), mate.ell_from, mate.ell_to) - q.x(),
-                    std::min(q.y(), pair.pinion().parameters().addendum_mm) - q.y());
-    if (back.norm() < kOnEdge) {
-      const auto met = pair.touch(t.half, pair_.sigma, here->first.point, phi_2, start);
-      if (!met) return std::nullopt;
-      return turned(t.tooth, *met);
-    }
-    const auto along = on_pinion(place - Vec2(kWay, 0)), up = on_pinion(place - Vec2(0, kWay));
-    if (!along || !up) return std::nullopt;
-    Eigen::Matrix2d J;
-    J.col(0) = (q - along->second) / kWay, J.col(1) = (q - up->second) / kWay;
-    const Vec2 step = J.inverse() * back;
-    if (!step.allFinite() || step.norm() > pair.wheel().parameters().outer_transverse_module_mm) return std::nullopt;
-    place += step;
-  }
-  return std::nullopt;
-}
-
-/// Flanks can come near at several places, such as both ends of a tooth: down from each.
-void BevelFlanks::refine(Tooth& t) const {
-  for (const Vec2& from : t.low) go_down(t, from);
-}
-
-/// Edges of both flanks lie askew in the grid, so steps that leave a flank slide along its edge: what touches first is
-/// mostly a corner of such edges.
-void BevelFlanks::go_down(Tooth& t, const Vec2& from) const {
-  const bevel_gear::BevelHalf& own = pair_.pair.wheel().halves()[static_cast<std::size_t>(t.half)];
-  Vec2 step((own.ell_to - own.ell_from) / (kColumns - 1),
-            (pair_.pair.highest() - pair_.pair.lowest(t.half)) / (kRows - 1)),
-      best = from;
-  BevelInverse start;
-  auto least = turned_within(t, best, start);
-  if (!least) return;
-  for (int n = 0; n < kSlides;) {
-    bool moved = false;
-    const Vec2 centre = best;
-    for (int i = -1; i <= 1; ++i)
-      for (int j = -1; j <= 1; ++j) {
-        if (i == 0 && j == 0) continue;
-        Vec2 place = centre + Vec2(i * step.x(), j * step.y());
-        const auto here = turned_within(t, place, start);
-        if (here && *here < *least - kEarlier) least = *here, best = place, moved = true;
-      }
-    // On along what is found, by steps as long as at the beginning again.
-    if (!moved) step /= 2, ++n;
-    else if (n > 0) step *= 2, --n;
-  }
-  if (*least < t.least) t.least = *least, t.ell = best.x(), t.height = best.y();
 }
 
 std::optional<BevelFlanks::WheelPlace> BevelFlanks::above(const CellSite& site, int half, const Vec2& at,
@@ -281,11 +197,11 @@ void BevelFlanks::add(const Tooth& tooth) {
                    [&](std::size_t a, std::size_t b) { return tooth.turned[a] < tooth.turned[b]; });
   for (const std::size_t k : order)
     if (auto site = site_at(tooth, tooth.grid[k])) {
-      if (const auto first = pair_.pair.wheel_place(tooth.half, pair_.sigma, tooth.ell, tooth.height)) {
+      if (const auto first = pair_.pair.wheel_place(tooth.half, pair_.sigma, tooth.first.ell, tooth.first.height)) {
         const WheelPlace at = wheel_place(tooth.half, tooth.tooth, first->beta, first->p);
         const Vec3 off = at.point - site->point;
         site->first = Vec2(off.dot(site->across), off.dot(site->along));
-        site->first_gap = (tooth.least - first_) * at.lever_1;
+        site->first_gap = (tooth.first.error - first_) * at.lever_1;
         site->first_lever = (pair_.options.torque_on_pinion ? at.lever_1 : at.lever_2) / pair_.lever;
       }
       sites_.push_back(*site);

@@ -2,6 +2,8 @@
 // against the pinion's. docs/loaded_contact.md 8.
 #pragma once
 
+#include <limits>
+
 #include "geometry/loaded/cell_flanks.h"
 #include "geometry/loaded_bevel/loaded_bevel_pair.h"
 
@@ -34,8 +36,8 @@ class BevelFlanks final : public loaded::CellFlanks {
     int half = 0, tooth = 0;
     std::vector<WheelPlace> grid;  ///< row-major from the lowest row; where the wheel has its flank
     std::vector<double> turned;    ///< sigma times the turn of the pinion beyond the exact ratio; NaN: it is not there
-    double least = 0, ell = 0, height = 0;  ///< least of `turned`, and where on the wheel
-    std::vector<Vec2> low;                  ///< places (ell, height) of the grid about which no other is lower
+    std::vector<contact::BevelNear> near;                                     ///< the same grid, whole
+    contact::BevelNear first{std::numeric_limits<double>::infinity(), 0, 0};  ///< the place that is met first
   };
   [[nodiscard]] double turn_of_wheel(int tooth) const;
   [[nodiscard]] WheelPlace wheel_place(int half, int tooth, double beta, double p) const;
@@ -44,12 +46,6 @@ class BevelFlanks final : public loaded::CellFlanks {
                                                          bevel_gear::BevelInverse& start) const;
   [[nodiscard]] double turned(int tooth, const contact::BevelTouch& touch) const;
   [[nodiscard]] Tooth look_at(int half, int tooth) const;
-  void refine(Tooth& tooth) const;                     ///< its least between the places of the grid
-  void go_down(Tooth& tooth, const Vec2& from) const;  ///< the same from one of them
-  /// sigma times the turn of the pinion beyond the exact ratio where it meets the place (ell, height) of the wheel; a
-  /// place beyond an edge of either flank moves onto it first. Empty: there is none.
-  [[nodiscard]] std::optional<double> turned_within(const Tooth& tooth, Vec2& place,
-                                                    bevel_gear::BevelInverse& start) const;
   /// The place above a point (x, y) of a site's plane, by Newton; empty: the wall does not reach it.
   [[nodiscard]] std::optional<WheelPlace> above(const loaded::CellSite& site, int half, const Vec2& at,
                                                 const WheelPlace& near) const;

@@ -100,6 +100,23 @@ TEST(LoadedBevelPair, LoadAndModulusScaleTogether) {
   EXPECT_NEAR(8 * a.pressure, b.pressure, 1e-5 * b.pressure);
 }
 
+/// The rolled rigid pair and the flanks of the cells look on different grids; both come to the same first touch.
+TEST(BevelFlanks, TouchFirstWhereTheRollDoes) {
+  contact::BevelContactOptions roll;
+  roll.steps = 8;
+  for (const auto* gears : {&single_gears(), &herringbone_gears()})
+    for (const int sigma : {1, -1}) {
+      const auto pair = pair_of(*gears, sigma, coarse_bodies());
+      const auto rolled = contact::bevel_contact(pair.pair, sigma, roll);
+      ASSERT_TRUE(rolled) << rolled.error().message;
+      for (int k = 0; k < roll.steps; ++k) {
+        const loaded_bevel::BevelFlanks flanks(pair, -pair.pair.pinion().pitch() * k / roll.steps);
+        EXPECT_NEAR(rolled->cycle[static_cast<std::size_t>(k)].error_rad, flanks.first_turn(), 1e-7)
+            << pair.halves.size() << " halves, " << sigma << " at " << k;
+      }
+    }
+}
+
 TEST(LoadedBevelPair, RigidTeethTouchWhereTheRollSays) {
   auto options = coarse_bodies();
   for (auto* body : {&options.wheel, &options.pinion}) body->E *= 1e3;
