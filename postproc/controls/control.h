@@ -11,6 +11,7 @@
 
 #include "cam/tool/assembly.h"
 #include "postproc/probing/probing.h"
+#include "postproc/readback/acting_comment.h"
 #include "postproc/readback/reader.h"
 #include "postproc/text/dialect.h"
 
@@ -41,6 +42,8 @@ struct Control {
       false;  ///< the text has places of the tool; in which order the axes move is the business of a post processor
   std::optional<ToolTable> tool_table = std::nullopt;  ///< none: tools are entered at the control
   probing::ProbingWords probe = nullptr;               ///< a probing program in its words; null: it has none
+  readback::FindActingComment acting_comment =
+      nullptr;  ///< null: its comments do nothing; its reader refuses them, too
 };
 
 }  // namespace toothpath::controls

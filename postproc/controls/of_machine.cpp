@@ -33,7 +33,8 @@ int output_of(std::string_view word) {
 /// Judges a machine file by the words of its control, key by key.
 class Judge {
  public:
-  Judge(const machines::Machine& machine, const text::NcDialect& words) : machine_(machine), words_(words) {}
+  Judge(const machines::Machine& machine, const Control& control)
+      : machine_(machine), control_(control), words_(control.words) {}
 
   std::vector<Diagnostic> errors() && {
     digits();
@@ -47,6 +48,7 @@ class Judge {
     references();
     own_lines();
     tool_check();
+    comments();
     return std::move(errors_);
   }
 
@@ -213,6 +215,26 @@ class Judge {
     if (!named) refuse("post.tool_change", "post.tool_change names {{tool}} in no line: it must fetch the tool");
   }
 
+  /// No line of the file has a comment that the control executes: nothing of it could be proven.
+  void comments() {
+    if (control_.acting_comment == nullptr) return;
+    const machines::PostSettings& post = machine_.post;
+    const auto look = [this](const char* key, const std::vector<std::string>& lines) {
+      for (const std::string& line : lines)
+        if (const auto found = control_.acting_comment(line))
+          refuse(key, "{}: \"{}\", column {}: {}; leave it out", key, line, found->column, found->text);
+    };
+    look("post.start", post.own_lines.start);
+    look("post.tool_change", post.own_lines.tool_change.value_or(std::vector<std::string>{}));
+    look("post.between_teeth", post.own_lines.between_teeth);
+    look("post.end", post.own_lines.end);
+    look("post.tcp_on", post.tcp_on);
+    look("post.tcp_off", post.tcp_off);
+    look("post.smoothing_on", post.smoothing_on);
+    look("post.smoothing_off", post.smoothing_off);
+    if (machine_.tool_check) look("tool_check.lines", machine_.tool_check->lines);
+  }
+
   /// The setter stands within the travel, and the lines name values that there are; what they let pass is said.
   void tool_check() {
     if (!machine_.tool_check) return;
@@ -269,6 +291,7 @@ class Judge {
   }
 
   const machines::Machine& machine_;
+  const Control& control_;
   const text::NcDialect& words_;
   std::vector<Diagnostic> errors_;
 };
@@ -276,7 +299,7 @@ class Judge {
 }  // namespace
 
 std::vector<Diagnostic> judge(const machines::Machine& machine) {
-  if (const Control* control = find(machine.dialect)) return Judge(machine, control->words).errors();
+  if (const Control* control = find(machine.dialect)) return Judge(machine, *control).errors();
   return {fail_at(machine.where("dialect"), "dialect = \"{}\" is not one of {}", machine.dialect, list_of_names())};
 }
 

@@ -150,6 +150,7 @@ NcExecution::Problem NcExecution::change_tool() {
 }
 
 NcExecution::Problem NcExecution::spindle_on() {
+  if (!spindle_set_ && tool_ < 0) return "the spindle starts before a tool was called and S was said";
   if (!spindle_set_ || operation_ < 0) return "M3 without an S word of this operation";
   spindle_ = true;
   spindle_doubt_ = false;
@@ -346,6 +347,7 @@ NcExecution::Problem NcExecution::to_reference(const Move& m, std::size_t which,
 }
 
 NcExecution::Problem NcExecution::set_length(int tool) {
+  if (tool < 0) return "the length of a tool before a tool was called";
   const auto found = control_.tool_length_mm.find(tool);
   if (found == control_.tool_length_mm.end()) return fmt::format("tool length {} is not in the tool list", tool);
   length_ = found->second;
@@ -414,7 +416,8 @@ NcExecution::Problem NcExecution::tcp_on() {
   if (!control_.chain) return "TCP on a machine without TCP (tcp = \"none\")";
   if (tcp_) return "TCP is on already";
   if (plane_) return "TCP in a tilted plane: it must be switched off ahead";
-  if (!length_ || !offset_) return "TCP without tool length compensation or work offset";
+  if (!length_) return tool_ < 0 ? "TCP before a tool was called" : "TCP without tool length compensation";
+  if (!offset_) return "TCP without a work offset";
   if (!known(joints_)) return "TCP at a position that the program did not set";
   if (rules_.tcp_needs_zero && !(at_zero(3) && at_zero(4)))
     return "TCP starts with the rotaries away from zero: the table frame would be frozen there";
@@ -517,7 +520,9 @@ NcExecution::Problem NcExecution::goal_of(const Move& m, std::array<double, 5>& 
     if (frame_deg_ != 0) return "a turned frame without TCP";
     joints[a] += (*offset_)[static_cast<int>(a)];
     if (a != 2) continue;
-    if (!length_) return "Z word without tool length compensation";
+    if (!length_)
+      return tool_ < 0 ? "Z word in work coordinates before a tool was called: it has no length"
+                       : "Z word without tool length compensation";
     joints[a] += *length_;
   }
   return std::nullopt;
@@ -704,7 +709,7 @@ NcExecution::Problem NcExecution::corners(const std::array<double, 5>& goal, con
 NcExecution::Problem NcExecution::feed_minutes(const Move& m, const std::array<double, 5>& goal, const Vec3& tip,
                                                double& minutes) const {
   if (!spindle_ && !control_.dry_run) return "G1 while the spindle stands";
-  if (tool_ < 0) return "G1 without a tool";
+  if (tool_ < 0) return "G1 before a tool was called";
   if (length_ && length_of_ != tool_)
     return fmt::format("G1 with the length of tool {} while tool {} is in the spindle", length_of_, tool_);
   if (feed_mode_ == Feed::inverse_time && !m.own_feed) return "G1 in G93 without F";

@@ -144,6 +144,20 @@ class NcScanner {
   std::size_t i_ = 0;
 };
 
+/// A character for a message: itself where it can be printed, else its code.
+[[nodiscard]] inline std::string shown_character(char c) {
+  return c > ' ' && c <= '~' ? fmt::format("'{}'", c) : fmt::format("0x{:02x}", static_cast<unsigned char>(c));
+}
+
+/// The beginning of a text for a message: what cannot be printed as its code.
+[[nodiscard]] inline std::string shown_text(std::string_view text) {
+  constexpr std::size_t kMost = 60;
+  std::string out;
+  for (const char c : text.substr(0, kMost))
+    out += c >= ' ' && c <= '~' ? std::string(1, c) : fmt::format("<{:02x}>", static_cast<unsigned char>(c));
+  return text.size() > kMost ? out + ".." : out;
+}
+
 /// Lines of a text, without their ends.
 [[nodiscard]] inline std::vector<std::string_view> lines_of(std::string_view text) {
   std::vector<std::string_view> lines;

@@ -49,11 +49,25 @@ class AptReader {
       if (const int tooth = readback::comment_label(s.rest(), "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
       return std::nullopt;
     }
-    if (s.take("PARTNO/")) return std::nullopt;
+    if (s.take("PARTNO/")) return part_name(s);
+    s = readback::NcScanner(text.substr(0, text.find("$$")));  // a comment may stand behind a statement
+    s.skip_blanks();
     const int column = s.column();
     auto bad = statement(s, column);
     if (!bad && !s.done()) return here(s.column(), "words that do not belong to the statement");
     return bad;
+  }
+
+  /// The post processor writes it into the machine's program, most of them as a comment: ( ) ; and the like would end
+  /// that.
+  Problem part_name(const readback::NcScanner& s) const {
+    const auto bad = s.rest().find_first_of("();%\"$");
+    if (bad == std::string_view::npos) return std::nullopt;
+    return here(
+        s.column() + static_cast<int>(bad),
+        fmt::format("PARTNO with {}: a post processor that writes the name as a comment would end it there, and "
+                    "what follows would be executed",
+                    readback::shown_character(s.rest()[bad])));
   }
 
   Problem statement(readback::NcScanner& s, int column) {
@@ -82,7 +96,14 @@ class AptReader {
       if (!stopped_) return here(column, "FINI without END: the machine's program would not end");
       return ended_ = true, std::nullopt;
     }
-    return here(column, "the statement is not in the subset");
+    for (const char* word : {"INSERT", "PPRINT", "PPFUN"})
+      if (s.take(word))
+        return here(column,
+                    fmt::format("{} hands its text to the post processor, which may write it into the machine's "
+                                "program as it stands: leave it out",
+                                word));
+    return here(column,
+                fmt::format("{} is not in the subset", readback::shown_text(s.rest().substr(0, s.rest().find('/')))));
   }
 
   Problem feedrate(readback::NcScanner& s, int column) {

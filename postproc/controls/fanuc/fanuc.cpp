@@ -71,8 +71,22 @@ text::NcDialect fanuc_words() {
   return d;
 }
 
+std::optional<readback::ActingComment> text_behind_end_of_block(std::string_view line) {
+  bool comment = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '(' || line[i] == ')') comment = line[i] == '(';
+    if (line[i] != ';' || comment) continue;
+    if (line.find_first_not_of(" \t\r;", i) == std::string_view::npos) return std::nullopt;
+    return readback::ActingComment{static_cast<int>(i) + 1,
+                                   "text behind ; which ends a block on this control: what follows is executed as the "
+                                   "next block, a comment stands in ( )"};
+  }
+  return std::nullopt;
+}
+
 iso::IsoLanguage fanuc_language() {
   iso::IsoLanguage l;
+  l.acting_comment = text_behind_end_of_block;
   l.g_tenths = {434, 531, 610, 640, 682, 690};
   l.stops_at_corners = l.moves_zeros = true;
   l.extended = {.tenths = 541, .last = kLastExtended};
@@ -84,6 +98,9 @@ iso::IsoLanguage fanuc_language() {
 
 WorkOffsets fanuc_offsets() { return {"G54 to G59 and G54.1 P1 to P300", has_offset}; }
 
-Control fanuc() { return {fanuc_words(), {}, fanuc_offsets(), execute, false, std::nullopt, probing::g31_probing}; }
+Control fanuc() {
+  return {fanuc_words(), {},           fanuc_offsets(),      execute,
+          false,         std::nullopt, probing::g31_probing, text_behind_end_of_block};
+}
 
 }  // namespace toothpath::controls

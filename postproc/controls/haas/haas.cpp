@@ -32,6 +32,7 @@ const iso::IsoLanguage& language() {
   static const iso::IsoLanguage l = [] {
     iso::IsoLanguage haas;
     haas.g_tenths = {610, 640, 690};
+    haas.acting_comment = text_behind_end_of_block;
     haas.stops_at_corners = haas.moves_zeros = haas.local_calls = true;
     haas.dwell = iso::DwellNumber::by_point;
     haas.bare_reference = true;
@@ -56,8 +57,14 @@ bool has_offset(std::string_view name) {
 }  // namespace
 
 Control haas() {
-  return {
-      words(), {}, {"G54 to G59 and G154 P1 to P99", has_offset}, execute, false, std::nullopt, probing::g31_probing};
+  return {words(),
+          {},
+          {"G54 to G59 and G154 P1 to P99", has_offset},
+          execute,
+          false,
+          std::nullopt,
+          probing::g31_probing,
+          text_behind_end_of_block};
 }
 
 }  // namespace toothpath::controls

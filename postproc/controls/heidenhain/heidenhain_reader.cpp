@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "geometry/base/angle.h"
+#include "postproc/controls/heidenhain/lines.h"
 #include "postproc/controls/heidenhain/presets.h"
 #include "postproc/readback/execution.h"
 #include "postproc/readback/scanner.h"
@@ -31,6 +32,7 @@ class Heidenhain {
       : file_(file),
         control_(control),
         lines_(readback::lines_of(text)),
+        joined_(join_lines(lines_)),
         execution_(control,
                    {.turns_need_axis_blend = true,
                     .stop = readback::ProgramStop::ends_spindle,
@@ -55,8 +57,10 @@ class Heidenhain {
   using Problem = std::optional<Diagnostic>;
 
   Diagnostic place(std::size_t line, int column, std::string message) const {
-    return {DiagnosticKind::refused_input, {file_, static_cast<int>(line), column}, std::move(message)};
+    const int number = line > 0 ? joined_.number(line - 1) : 0;
+    return {DiagnosticKind::refused_input, {file_, number, column}, std::move(message)};
   }
+  std::int32_t number() const { return joined_.number(line_); }
   Diagnostic here(int column, std::string message) const { return place(line_ + 1, column, std::move(message)); }
   Problem placed(int column, readback::NcExecution::Problem problem) const {
     if (!problem) return std::nullopt;
@@ -69,7 +73,7 @@ class Heidenhain {
       if (lines_[i].size() > kLongestHeidenhainLine)
         return place(i + 1, static_cast<int>(kLongestHeidenhainLine),
                      fmt::format("line of {} characters exceeds {}", lines_[i].size(), kLongestHeidenhainLine));
-      readback::NcScanner s(lines_[i]);
+      readback::NcScanner s(heidenhain_code(lines_[i]));
       const auto n = s.number();
       if (!n || *n != static_cast<double>(i) || (s.at() != ' ' && s.at() != '\0'))
         return place(i + 1, 1, fmt::format("block number {} expected", i));
@@ -86,7 +90,7 @@ class Heidenhain {
   Problem execute(std::string_view text) {
     readback::NcScanner s(text);
     (void)s.number();
-    if (s.done()) return std::nullopt;
+    if (s.done() || s.at() == '*') return std::nullopt;  // * structures the text for its reader
     if (s.at() == ';') {
       const std::string_view comment = s.rest().substr(1);
       if (const int op = readback::comment_label(comment, "OP "); op >= 0) execution_.begin_operation(op);
@@ -95,6 +99,9 @@ class Heidenhain {
       if (checked >= 0) return check_tool(checked);
       return std::nullopt;
     }
+    s = readback::NcScanner(heidenhain_code(text));
+    (void)s.number();
+    s.skip_blanks();
     if (started_ == s.take("BEGIN PGM "))
       return here(s.column(), started_ ? "BEGIN PGM inside the program" : "the program does not begin with BEGIN PGM");
     if (!started_) {
@@ -131,7 +138,7 @@ class Heidenhain {
     const std::size_t count = std::min(execution_.check_lines(), lines_.size() - pc_);
     std::vector<std::string_view> lines;
     for (std::size_t i = 0; i < count; ++i) lines.push_back(tool_check::without_number(lines_[pc_ + i]));
-    if (const auto bad = execution_.check_tool(tool, lines, static_cast<std::int32_t>(line_) + 1))
+    if (const auto bad = execution_.check_tool(tool, lines, number()))
       return place(line_ + 1 + bad->line, bad->column, bad->text);
     pc_ += count;
     execution_.set_unit();  // BEGIN PGM .. MM, and words of its own for steps and feeds
@@ -152,8 +159,8 @@ class Heidenhain {
     if (s.take("FN 12: IF ")) return jump_if_less(s);
     if (s.at() == 'Q' || s.take("FN 0: ") || s.take("FN 1: ")) return assign(s);
     if (s.take("TOOL DEF ")) {
-      const auto n = s.number();
-      return n ? placed(column, execution_.choose_tool(*n)) : here(s.column(), "number expected");
+      const auto n = tool_number(s);
+      return n ? placed(column, execution_.choose_tool(*n)) : Problem(n.error());
     }
     if (s.take("TOOL CALL ")) return tool_call(s, column);
     if (s.take("CYCL DEF ")) return cycle(s, column);
@@ -166,13 +173,15 @@ class Heidenhain {
     }
     if (s.take("TRANS DATUM AXIS ")) return plane_origin(s, column);
     if (s.take("BLK FORM CYLINDER Z ")) return blank(s);
+    if (s.take("BLK FORM 0.1 ") || s.take("BLK FORM 0.2 "))
+      return s.advance(s.rest().size()), std::nullopt;  // a picture
     if (s.take("FUNCTION RESET TCPM")) return unsaid_.said(kTcpm), placed(column, execution_.tcp_off());
     if (s.take("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS")) return placed(column, execution_.tcp_on());
     if (s.take("FUNCTION DWELL TIME")) return dwell(s, false);
     if (s.take("FUNCTION DWELL REV")) return dwell(s, true);
     if (s.take("STOP")) return execution_.stop(), s.skip_blanks(), s.done() ? std::nullopt : functions(s);
     if (s.at() == 'M') return functions(s);
-    return here(column, "the block is not in the subset");
+    return here(column, fmt::format("{} is not in the subset", readback::shown_text(s.rest())));
   }
 
   // Parameters.
@@ -330,6 +339,34 @@ class Heidenhain {
     return placed(column, turns ? execution_.dwell_turns(*v) : execution_.dwell(*v / 60));
   }
 
+  /// Tools of the list have numbers.
+  Result<double> tool_number(readback::NcScanner& s) const {
+    s.skip_blanks();
+    if (const auto n = s.number()) return *n;
+    if (s.at() != '"') return here(s.column(), "number expected");
+    return here(s.column(),
+                fmt::format("tool {} is called by its name: the tools of the list have numbers, TOOL CALL 1",
+                            readback::shown_text(s.rest().substr(0, s.rest().find('"', 1) + 1))));
+  }
+  /// DL+0 DR+0 DR2+0 of a TOOL CALL, and its F, which F AUTO alone would take.
+  Problem further_sizes(readback::NcScanner& s) const {
+    while (!s.done()) {
+      const int column = s.column();
+      const char* const name = s.take("DL")    ? "DL"
+                               : s.take("DR2") ? "DR2"
+                               : s.take("DR")  ? "DR"
+                               : s.take("F")   ? "F"
+                                               : "";
+      const auto v = s.number();
+      if (*name == '\0' || !v)
+        return here(column, fmt::format("{} is not in the subset of TOOL CALL", readback::shown_text(s.rest())));
+      if (*name == 'D' && *v != 0)
+        return here(column,
+                    fmt::format("{}{:+g}: the tool would have another size than in the list, limit 0", name, *v));
+    }
+    return std::nullopt;
+  }
+
   Problem tool_call(readback::NcScanner& s, int column) {
     if (s.take("S")) {  // another speed of the tool in the spindle
       const auto speed = s.number();
@@ -337,11 +374,15 @@ class Heidenhain {
       if (execution_.tool() < 0) return here(column, "TOOL CALL S without a tool in the spindle");
       return placed(column, execution_.set_speed(*speed));
     }
-    const auto n = s.number();
+    const auto n = tool_number(s);
+    if (!n) return n.error();
     s.skip_blanks();
-    if (!n || !s.take("Z S")) return here(s.column(), "TOOL CALL needs number, Z and S");
+    if (!s.take("Z")) return here(s.column(), "TOOL CALL needs number, Z and S");
+    s.skip_blanks();
+    if (!s.take("S")) return here(s.column(), "TOOL CALL needs number, Z and S");
     const auto speed = s.number();
     if (!speed) return here(s.column(), "number expected");
+    if (auto bad = further_sizes(s)) return bad;
     if (auto bad = placed(column, execution_.set_speed(*speed))) return bad;
     if (auto bad = placed(column, execution_.choose_tool(*n))) return bad;
     if (auto bad = placed(column, execution_.change_tool())) return bad;
@@ -427,7 +468,7 @@ class Heidenhain {
       if (!n) return here(s.column(), "number expected");
       v[i] = *n;
     }
-    if (control_.blank) control_.blank({v[0], v[3], v[2] - v[1], v[2]}, static_cast<std::int32_t>(line_) + 1);
+    if (control_.blank) control_.blank({v[0], v[3], v[2] - v[1], v[2]}, number());
     return std::nullopt;
   }
 
@@ -464,7 +505,7 @@ class Heidenhain {
     for (int i = 0; i < 3; ++i)
       rotation = Eigen::AngleAxisd(radians(deg[i]), Vec3::Unit(i)).toRotationMatrix() * rotation;
     if (auto bad = placed(column, execution_.define_plane(shift_, rotation, "PLANE SPATIAL"))) return bad;
-    return placed(column, execution_.turn_to_plane(pair, "PLANE SPATIAL", static_cast<std::int32_t>(line_) + 1));
+    return placed(column, execution_.turn_to_plane(pair, "PLANE SPATIAL", number()));
   }
 
   // Straight lines.
@@ -489,8 +530,15 @@ class Heidenhain {
       }
       if (c == 'F') {
         s.advance(1);
+        s.skip_blanks();
+        if (s.take("MAX")) {
+          fmax = true;
+          continue;
+        }
         const auto f = s.number();
-        if (!f) return here(column, "number expected");
+        if (!f)
+          return here(column, s.rest().starts_with("AUTO") ? "F AUTO is not in the subset: F and a number, or FMAX"
+                                                           : "number expected behind F");
         if (auto bad = placed(column, execution_.set_feed(*f))) return bad;
         m.own_feed = true;
         continue;
@@ -501,7 +549,9 @@ class Heidenhain {
       }
       std::size_t a = 0;
       while (a < 5 && (control_.letters[a] != c || c == '\0')) ++a;
-      if (a == 5) return here(column, "a word that is not in the subset or no axis of the machine");
+      if (a == 5)
+        return here(column, fmt::format("{} is not in the subset or no axis of the machine",
+                                        readback::shown_text(s.rest().substr(0, s.rest().find(' ')))));
       if (m.has[a]) return here(column, fmt::format("two {} words in a block", c));
       s.advance(1);
       const auto v = word_value(s);
@@ -549,13 +599,14 @@ class Heidenhain {
     if (!moves && functions.empty()) return here(column, "L without an axis word");
     if (auto bad = perform(ahead)) return bad;
     if (moves)
-      if (auto bad = placed(column, execution_.move(m, static_cast<std::int32_t>(line_) + 1))) return bad;
+      if (auto bad = placed(column, execution_.move(m, number()))) return bad;
     return perform(behind);
   }
 
   const std::string& file_;
   const readback::NcControl& control_;
   std::vector<std::string_view> lines_;
+  JoinedLines joined_;
   readback::NcExecution execution_;
   std::unordered_map<double, std::size_t> labels_;
   std::unordered_map<std::size_t, double> repeats_;  // CALL LBL -> what is left

@@ -6,6 +6,7 @@
 
 #include "cam/tool/cutters.h"
 #include "postproc/controls/control.h"
+#include "postproc/controls/linuxcnc/comments.h"
 #include "postproc/controls/work_offset.h"
 #include "postproc/readback/iso/interpreter.h"
 
@@ -104,6 +105,7 @@ const iso::IsoLanguage& language() {
     linuxcnc.number_of_offset = number_of_offset;
     linuxcnc.origin_parameter = origin_parameter;
     linuxcnc.corner_of_g64 = corner_of_g64;
+    linuxcnc.acting_comment = linuxcnc_acting_comment;
     linuxcnc.most_m = 4;
     linuxcnc.dwell = iso::DwellNumber::seconds;
     linuxcnc.bare_reference = true;
@@ -141,7 +143,8 @@ Control linuxcnc() {
           execute,
           false,
           ToolTable{"program_tools.tbl", tool_table},
-          probing::g38_probing};
+          probing::g38_probing,
+          linuxcnc_acting_comment};
 }
 
 }  // namespace toothpath::controls

@@ -28,7 +28,8 @@ Status execute(std::string_view text, const std::string& file, const readback::N
 }  // namespace
 
 Control mitsubishi_m80() {
-  return {words(), {"mitsubishi", "m80"}, fanuc_offsets(), execute, false, std::nullopt, probing::g31_probing};
+  return {words(), {"mitsubishi", "m80"}, fanuc_offsets(),      execute,
+          false,   std::nullopt,          probing::g31_probing, text_behind_end_of_block};
 }
 
 }  // namespace toothpath::controls

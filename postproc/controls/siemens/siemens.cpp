@@ -8,6 +8,7 @@
 // remainder of the spread order is made with TRUNC, half a unit away from where it could fall on the wrong side.
 // ORIAXES: the rotaries are linear between the blocks, also where a block carries the tool vector A3 B3 C3.
 #include "postproc/controls/control.h"
+#include "postproc/controls/siemens/lines.h"
 #include "postproc/controls/siemens/siemens_reader.h"
 #include "postproc/controls/work_offset.h"
 
@@ -101,7 +102,8 @@ Control siemens() {
           execute_siemens,
           false,
           std::nullopt,
-          probing::meas_probing};
+          probing::meas_probing,
+          siemens_acting_comment};
 }
 
 }  // namespace toothpath::controls

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "geometry/base/angle.h"
+#include "postproc/controls/siemens/lines.h"
 #include "postproc/controls/siemens/path_group.h"
 #include "postproc/readback/execution.h"
 #include "postproc/readback/scanner.h"
@@ -27,13 +28,15 @@ class Siemens {
  public:
   Siemens(std::string_view text, const std::string& file, const readback::NcControl& control,
           const readback::MoveSink& sink)
-      : file_(file),
+      : text_(text),
+        file_(file),
         control_(control),
         lines_(readback::lines_of(text)),
         execution_(control, {.tcp_may_take_zero = true, .reference_keeps_length = true}, sink),
         path_(control.letters) {}
 
   Status run() {
+    if (auto bad = readback::no_acting_comment(text_, file_, siemens_acting_comment); !bad) return bad;
     if (auto bad = find_loops()) return *bad;
     while (!ended_) {
       if (pc_ >= lines_.size()) return place(lines_.size(), 0, "the program ends without M30");
@@ -88,8 +91,8 @@ class Siemens {
   Problem find_loops() {
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
-      readback::NcScanner s(lines_[i]);
-      s.skip_blanks();
+      readback::NcScanner s(in_capitals(siemens_code(lines_[i]), capitals_));
+      (void)take_beginning(s);
       if (s.take("FOR ")) open.push_back(i);
       else if (s.take("ENDFOR")) {
         if (open.empty()) return place(i + 1, s.column(), "ENDFOR closes nothing");
@@ -192,31 +195,23 @@ class Siemens {
     if (text.size() > kLongestSiemensLine)
       return here(static_cast<int>(kLongestSiemensLine),
                   fmt::format("line of {} characters exceeds {}", text.size(), kLongestSiemensLine));
-    const std::size_t semicolon = text.find(';');
-    if (semicolon != std::string_view::npos) {
-      const std::string_view comment = text.substr(semicolon + 1);
+    const std::string_view code = siemens_code(text);
+    if (code.size() < text.size()) {
+      const std::string_view comment = text.substr(code.size() + 1);
       if (const int op = readback::comment_label(comment, "OP "); op >= 0) execution_.begin_operation(op);
       if (const int tooth = readback::comment_label(comment, "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
       const int checked = execution_.check_lines() > 0 ? tool_check::checked_tool(text) : -1;
       if (checked >= 0) return check_tool(checked);
-      text = text.substr(0, semicolon);
     }
-    readback::NcScanner s(text);
-    if (s.done() || execution_.site_smoothing(text)) return std::nullopt;
-    if (s.take("FOR ")) return loop_head(s);
-    if (s.take("ENDFOR")) return loop_end(s);
-    if (s.take("CYCLE832(")) return contour_cycle(s);
-    if (s.at() == 'R' && readback::NcScanner::is_digit(s.ahead())) {
-      const auto n = parameter_number(s);
-      if (!n || !s.take("=")) return here(1, "an R parameter must be set with =");
-      const auto v = expression(s);
-      if (!v) return v.error();
-      if (!s.done()) return here(s.column(), "words behind an assignment");
-      parameters_[*n] = *v;
-      return std::nullopt;
-    }
+    if (code.starts_with("%"))
+      return here(1,
+                  "a line %..: it says under which name the control files the text when it reads it in; leave it out");
+    readback::NcScanner s(in_capitals(code, capitals_));
     Request r;
-    r.skip = s.take("/");
+    r.skip = take_beginning(s);
+    if (s.done() || (!r.skip && execution_.site_smoothing(code.substr(static_cast<std::size_t>(s.column()) - 1))))
+      return std::nullopt;
+    if (const auto done = statement(s, r.skip)) return *done;
     int words = 0;
     for (; !s.done(); ++words) {
       const bool number = s.at() == 'N';
@@ -231,6 +226,24 @@ class Siemens {
     if (auto bad = all_said(r)) return bad;
     if (r.g75) return fixed_point(r, words);
     return apply(r);
+  }
+  /// What is no block of words: a loop, the contour cycle, an assignment. Nothing: it is one.
+  std::optional<Problem> statement(readback::NcScanner& s, bool skipped) {
+    const bool assigns = s.at() == 'R' && readback::NcScanner::is_digit(s.ahead());
+    const bool words = !assigns && !s.rest().starts_with("FOR ") && !s.rest().starts_with("ENDFOR") &&
+                       !s.rest().starts_with("CYCLE832(");
+    if (words) return std::nullopt;
+    if (skipped) return skippable({}, 0);
+    if (s.take("FOR ")) return loop_head(s);
+    if (s.take("ENDFOR")) return loop_end(s);
+    if (s.take("CYCLE832(")) return contour_cycle(s);
+    const auto n = parameter_number(s);
+    if (!n || !s.take("=")) return here(1, "an R parameter must be set with =");
+    const auto v = expression(s);
+    if (!v) return v.error();
+    if (!s.done()) return here(s.column(), "words behind an assignment");
+    parameters_[*n] = *v;
+    return Problem();
   }
   /// CYCLE832(tolerance,_FINISH,1) and CYCLE832(tolerance,_ORI_FINISH,degrees); CYCLE832() ends it, and how far corners
   /// are left behind it must be said.
@@ -284,7 +297,7 @@ class Siemens {
     const int column = s.column();
     const char c = s.at();
     if (!readback::NcScanner::is_letter(c))
-      return here(column, fmt::format("character 0x{:02x} is no part of a word", static_cast<unsigned char>(c)));
+      return here(column, fmt::format("character {} is no part of a word", readback::shown_character(c)));
     if (readback::NcScanner::is_letter(s.ahead())) return keyword(s, r);
     if (c >= 'A' && c <= 'C' && s.ahead() == '3' && s.rest().substr(2, 1) == "=") return vector_word(s, r);
     for (std::size_t a = 0; a < 5; ++a)
@@ -354,9 +367,13 @@ class Siemens {
   }
 
   Problem tool_word(readback::NcScanner& s, Request& r, int column) {
-    if (!s.take("=\"T")) return here(column, "T needs the name of a tool of the list: T=\"T1\"");
-    const auto n = literal(s, column);
-    if (!n) return n.error();
+    const std::string_view rest = s.rest();
+    const std::string_view name = s.take("=\"") ? s.rest().substr(0, s.rest().find('"')) : std::string_view();
+    const auto n = name.starts_with("T") ? readback::NcScanner(name.substr(1)).number() : std::nullopt;
+    if (!n || *n != std::floor(*n) || name.find_first_not_of("0123456789", 1) != std::string_view::npos)
+      return here(column, fmt::format("T{}: the tools of the list are called T=\"T1\" and so on",
+                                      readback::shown_text(rest.substr(0, rest.find(' ')))));
+    s.advance(name.size());
     if (!s.take("\"")) return here(s.column(), "\" expected");
     if (auto bad = placed(column, execution_.choose_tool(*n))) return bad;
     r.column = column;
@@ -399,11 +416,14 @@ class Siemens {
       return blank(s);
     }
     const std::string_view name = s.letters();
-    if (name == "TRAORI") r.traori = true;
-    else if (name == "TRAFOOF") r.trafoof = true;
+    if (name == "TRAORI") {
+      r.traori = true;
+      if (auto bad = first_transformation(s)) return bad;
+    } else if (name == "TRAFOOF") r.trafoof = true;
     else if (name == "SUPA") r.supa = true;
     else if (name == "COMPOF") return unsaid_.said(kCompressor), std::nullopt;
     else if (name == "ORIWKS" || name == "ORIAXES") return std::nullopt;
+    else if (name == "MSG") return message(s);
     else if (name == "FGROUP" || name == "FGREF") return path_group(s, name == "FGREF");
     else if (name == "FP") {
       if (!s.take("=")) return here(s.column(), "= expected");
@@ -432,6 +452,27 @@ class Siemens {
     }
     r.column = column;
     return std::nullopt;
+  }
+
+  /// TRAORI is TRAORI(1).
+  Problem first_transformation(readback::NcScanner& s) const {
+    if (!s.take("(")) return std::nullopt;
+    const int column = s.column();
+    const auto n = s.number();
+    if (!n || !s.take(")")) return here(column, "TRAORI(1) expected: further arguments are not in the subset");
+    if (*n == 1) return std::nullopt;
+    return here(column, fmt::format("TRAORI({}): the machine file states one transformation, number 1", *n));
+  }
+  /// MSG("text") shows it, MSG() clears it.
+  Problem message(readback::NcScanner& s) const {
+    const int column = s.column();
+    if (!s.take("(")) return here(column, "( expected behind MSG");
+    if (s.take("\"")) {
+      const std::size_t end = s.rest().find('"');
+      if (end == std::string_view::npos) return here(column, "MSG without the second quote of its text");
+      s.advance(end + 1);
+    }
+    return s.take(")") ? Problem() : here(s.column(), "MSG is read with one text in quotes");
   }
 
   /// TRANS alone ends what TRANS and ROT have set, TRANS C=angle takes its place.
@@ -667,9 +708,11 @@ class Siemens {
     return placed(r.column, execution_.move(r.move, static_cast<std::int32_t>(line_) + 1));
   }
 
+  std::string_view text_;
   const std::string& file_;
   const readback::NcControl& control_;
   std::vector<std::string_view> lines_;
+  std::string capitals_;  // of the line that is being read
   readback::NcExecution execution_;
   std::unordered_map<std::size_t, std::size_t> ends_;  // FOR -> ENDFOR
   readback::LoopTurns turns_;

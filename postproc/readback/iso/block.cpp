@@ -5,6 +5,8 @@
 #include <optional>
 #include <span>
 
+#include "postproc/readback/scanner.h"
+
 namespace toothpath::iso {
 namespace {
 
@@ -33,8 +35,10 @@ class Parser {
     if (at() == '/') {
       ++i_;
       block_.skip = true;
+      if (!o_words_ && is_digit(at()) && at() != '0') ++i_;  // which of the switches: /2
       skip_blanks();
     }
+    if (!block_.skip) i_ = line_.size() - beginning(line_.substr(i_), o_words_).size();
     if (upper(at()) == 'O' && !block_.skip) o_line();
     while (!problem_) {
       skip_blanks();
@@ -44,7 +48,7 @@ class Parser {
       else if (c == ';') break;
       else if (c == '#') assignment();
       else if (is_letter(c)) word();
-      else stop(i_, fmt::format("character {} is no part of a word", printable(c)));
+      else stop(i_, fmt::format("character {} is no part of a word", readback::shown_character(c)));
     }
     if (problem_) return *problem_;
     return std::move(block_);
@@ -54,9 +58,6 @@ class Parser {
   char at() const { return i_ < line_.size() ? line_[i_] : '\0'; }
   void skip_blanks() {
     while (i_ < line_.size() && (line_[i_] == ' ' || line_[i_] == '\t')) ++i_;
-  }
-  static std::string printable(char c) {
-    return c > ' ' && c <= '~' ? fmt::format("'{}'", c) : fmt::format("0x{:02x}", static_cast<unsigned char>(c));
   }
   static Diagnostic error(std::size_t column, std::string text) {
     return {DiagnosticKind::refused_input, {"", 0, static_cast<int>(column) + 1}, std::move(text)};
@@ -138,7 +139,7 @@ class Parser {
       const char c = line_[k];
       if (c == ' ' || c == '\t') continue;
       if (!is_letter(c) && !is_digit(c) && c != '_' && c != '-') {
-        stop(k, fmt::format("character {} in the name of a parameter", printable(c)));
+        stop(k, fmt::format("character {} in the name of a parameter", readback::shown_character(c)));
         return std::nullopt;
       }
       name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -265,6 +266,11 @@ class Parser {
   void o_line() {
     const std::size_t begin = i_;
     ++i_;
+    skip_blanks();
+    if (o_words_ && at() == '<')
+      return stop(begin, fmt::format("o{} has a name: it may stand for another file or for Python of the machine. "
+                                     "Sub-programs and loops of this text have numbers",
+                                     readback::shown_text(line_.substr(i_, line_.find('>', i_) - i_ + 1))));
     const std::size_t first = i_;
     std::int64_t n = 0;
     while (is_digit(at()) && n < 1000000) n = n * 10 + (line_[i_++] - '0');
@@ -305,6 +311,20 @@ class Parser {
 };
 
 }  // namespace
+
+std::string_view beginning(std::string_view line, bool o_words) {
+  const auto trimmed = [](std::string_view text) {
+    text.remove_prefix(std::min(text.find_first_not_of(" \t"), text.size()));
+    return text;
+  };
+  line = trimmed(line);
+  if (!o_words || line.empty() || upper(line[0]) != 'N') return line;
+  std::string_view rest = trimmed(line.substr(1));
+  if (rest.empty() || !is_digit(rest[0])) return line;
+  rest.remove_prefix(std::min(rest.find_first_not_of("0123456789"), rest.size()));
+  rest = trimmed(rest);
+  return !rest.empty() && upper(rest[0]) == 'O' ? rest : line;
+}
 
 Result<NcBlock> parse_nc_block(std::string_view line, bool o_words) { return Parser(line, o_words).parse(); }
 

@@ -71,6 +71,9 @@ struct NcBlock {
 /// 256 characters, expressions nested deeper than 16.
 [[nodiscard]] Result<NcBlock> parse_nc_block(std::string_view line, bool o_words);
 
+/// The line without blanks at its beginning, and without its N word ahead of an o-word.
+[[nodiscard]] std::string_view beginning(std::string_view line, bool o_words);
+
 /// The parameters of a condition "#1*#1+#2*#2 GT 0", which holds where one of them is not 0. Empty: it is another one.
 [[nodiscard]] std::vector<std::size_t> squares_above_zero(const NcBlock& block, const NcValue& condition);
 

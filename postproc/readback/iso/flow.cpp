@@ -199,15 +199,15 @@ std::optional<Diagnostic> NcFlow::find_labels() {
   std::vector<std::pair<OWord, std::int64_t>> open;
   std::vector<std::size_t> open_line;
   for (std::size_t i = 0; i < lines_.size(); ++i) {
-    const auto first = lines_[i].find_first_not_of(" \t");
-    if (first == std::string_view::npos) continue;
+    const std::string_view line = beginning(lines_[i], o_words_);
+    if (line.empty()) continue;
     if (check_lines_ > 0 && tool_check::checked_tool(lines_[i]) >= 0) {
       i += check_lines_;
       continue;
     }
-    const char c = lines_[i][first];
+    const char c = line[0];
     if (c == '%') percents_.push_back(i);
-    if (c == 'N' && !o_words_) note_number(i, lines_[i].substr(first + 1));
+    if (c == 'N' && !o_words_) note_number(i, line.substr(1));
     if (c != 'o' && c != 'O') continue;
     auto block = parse_nc_block(lines_[i], o_words_);
     if (!block) {

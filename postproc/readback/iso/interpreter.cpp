@@ -21,7 +21,9 @@ class Interpreter {
  public:
   Interpreter(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink,
               const IsoLanguage& language)
-      : control_(control),
+      : text_(text),
+        file_(file),
+        control_(control),
         language_(language),
         flow_(text, file, language.o_words, control),
         execution_(control, language.rules, sink),
@@ -29,6 +31,7 @@ class Interpreter {
         frames_(control, language, flow_, execution_) {}
 
   Status run() {
+    if (auto bad = readback::no_acting_comment(text_, file_, language_.acting_comment); !bad) return bad;
     return flow_.run([this](const NcBlock& b) { return block(b); });
   }
 
@@ -271,6 +274,8 @@ class Interpreter {
     return r.tcp ? placed(r.column, execution_.tcp_on()) : std::nullopt;
   }
 
+  std::string_view text_;
+  const std::string& file_;
   const NcControl& control_;
   const IsoLanguage& language_;
   NcFlow flow_;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "postproc/readback/acting_comment.h"
 #include "postproc/readback/execution.h"
 
 namespace toothpath::iso {
@@ -48,6 +49,7 @@ struct IsoLanguage {
   /// What the control leaves of a corner under G64 P Q, mm; `exact_mm`: what the machine leaves where it stops. Null:
   /// there is no G64 P.
   double (*corner_of_g64)(double p_mm, double q_mm, double exact_mm) = nullptr;
+  readback::FindActingComment acting_comment = nullptr;  ///< comments that are executed; null: there are none
   readback::NcRules rules;
 };
 

@@ -73,13 +73,14 @@ TEST(HeidenhainReader, RefusalsNameLineAndColumn) {
   };
   EXPECT_EQ(error("Q1 = 2\nFN 1: Q5 = +Q1 + -12.5\nL A+10 C+Q5 R0 FMAX\nL X+1 FMAX\nM5\nM30\nEND PGM P MM\n"), "none");
   const std::pair<const char*, const char*> cases[] = {
-      {"CC X+1 Y+1\n", "p:7:3: error: the block is not in the subset"},
+      {"CC X+1 Y+1\n", "p:7:3: error: CC X+1 Y+1 is not in the subset"},
       {"L X+1 X+2 FMAX\n", "two X words in a block"},
-      {"L IX+1 FMAX\n", "p:7:5: error: a word that is not in the subset"},
+      {"L IX+1 FMAX\n", "p:7:5: error: IX+1 is not in the subset"},
       {"L X+1 R0 F100\n", "G1 from a position that the program did not set"},
       {"L X+Q7 FMAX\n", "a parameter that was never set"},
       {"LN X+1 Y+1 Z+1 TX+0 TY+0 F100\n", "LN needs TX TY TZ"},
-      {"FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR\n", "p:7:3: error: the block is not in the subset"},
+      {"FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR\n",
+       "p:7:3: error: FUNCTION TCPM F TCP AXIS POS PATHCTRL VECTOR is not in the subset"},
       {"FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS\n", "TCP at a position that the program did not set"},
       {"TOOL CALL 1 Z S100\n", "tool change while the spindle turns"},
       {"CYCL DEF 200 DRILLING\n", "the cycle is not in the subset"},
@@ -106,7 +107,7 @@ TEST(AptReader, RefusalsNameLineAndColumn) {
       {"GOTO/1.,2.,300.,0.,0.,2.\n", "a tool vector of length 2"},
       {"GOTO/1.,2.,300.,0.,0.,1.\n", "G1 without F"},
       {"GOTO/1.,2.,$\n", "a line must follow"},
-      {"CYCLE/DRILL\n", "p:7:1: error: the statement is not in the subset"},
+      {"CYCLE/DRILL\n", "p:7:1: error: CYCLE is not in the subset"},
       {"LOADTL/1,LENGTH,96.\n", "LENGTH 96 differs from 95"},
       {"CUTTER/4.,2.5\n", "p:7:11: error: r of CUTTER is 2.5, that of the job's tool is 2.0000"},
       {"CUTTER/4.,2.\n", "p:7:13: error: , expected"},
