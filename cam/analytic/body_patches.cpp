@@ -250,6 +250,13 @@ Vec2 BodyPatches::sides(const Cell& cell, const BodyQuad& q) const {
   return out;
 }
 
+Vec2 BodyPatches::bends(const Cell& cell, const BodyQuad& q) const {
+  if (is_round(cell.surface)) return Vec2::Zero();
+  const Vec2 size = extent(q);
+  const PatchBend& bend = blocks_[cell.block].bend;
+  return {bend.sag(size.x(), 0), bend.sag(0, size.y())};
+}
+
 double BodyPatches::stays(std::size_t index, const BodyQuad& q) const {
   const Cell& cell = cells_[index];
   if (!is_end(cell.surface)) return 0;
@@ -260,8 +267,10 @@ double BodyPatches::stays(std::size_t index, const BodyQuad& q) const {
 double BodyPatches::size(std::size_t index, const BodyQuad& q) const { return sides(cells_[index], q).maxCoeff(); }
 
 std::array<BodyQuad, 2> BodyPatches::halved(std::size_t index, const BodyQuad& q) const {
-  const Vec2 side = sides(cells_[index], q);
-  const bool across = side.x() >= side.y();
+  // A narrow quad whose bound is poor (close to a fold of the fillet) would stay as poor however short it is made.
+  const Vec2 side = sides(cells_[index], q), bend = bends(cells_[index], q);
+  const Vec2& shorten = bend.maxCoeff() > side.maxCoeff() ? bend : side;
+  const bool across = shorten.x() >= shorten.y();
   const auto& x = q.at;
   std::array<std::array<Vec2, 4>, 2> at;
   std::array<std::array<int, 4>, 2> old;  // corners that stay, and -1

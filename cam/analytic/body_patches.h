@@ -91,6 +91,7 @@ class BodyPatches {
     return blocks_[cells_[cell].block].frame.uv(at);
   }
 
+  /// Across its longer side; where the bend may leave more of the hull than that, across the parameter that bends more.
   [[nodiscard]] std::array<BodyQuad, 2> halved(std::size_t cell, const BodyQuad& quad) const;
   /// Longest side that halving shortens, mm. A quad of an end is higher by what its border may stand out: `stays`.
   [[nodiscard]] double size(std::size_t cell, const BodyQuad& quad) const;
@@ -122,6 +123,8 @@ class BodyPatches {
   };
   /// Lengths of the sides along both parameters, as `size` counts.
   [[nodiscard]] Vec2 sides(const Cell& cell, const BodyQuad& quad) const;
+  /// What the bend along both parameters may leave of the hull of a quad's corners, as `sag` counts. mm
+  [[nodiscard]] Vec2 bends(const Cell& cell, const BodyQuad& quad) const;
   [[nodiscard]] BodyQuad made(const Cell& cell, const std::array<Vec2, 4>& at) const;
   [[nodiscard]] BodyQuad end_quad(const Cell& cell, const std::array<Vec2, 4>& at) const;
   [[nodiscard]] double edge_azimuth(int which, double r) const;

@@ -358,6 +358,12 @@ class Sweep {
   [[nodiscard]] double leeway(double gap) const {
     return gap >= o_.contact_mm ? o_.proof_mm : std::max(0.5 * o_.contact_proof_mm, -0.1 * (gap + kWreckDepth));
   }
+  /// Is this bound near enough to the least gap found? One that says less than what is asked for, where what was found
+  /// is as much, is followed as closely as a contact.
+  [[nodiscard]] bool near_enough(double bound) const {
+    const bool undecided = bound < o_.asked_mm && best_ >= o_.asked_mm;
+    return bound >= best_ - (undecided ? 0.5 * o_.contact_proof_mm : leeway(std::min(best_, bound)));
+  }
 
   /// The corners of a piece at both ends of its time, as the tool sees them.
   struct Seen {
@@ -484,7 +490,7 @@ class Sweep {
         return;
       }
       const double size = patches.size(target.cell, piece.quad);
-      if (least + fixed >= best_ - leeway(std::min(best_, least + fixed)) || least + fixed >= o_.settled_mm ||
+      if (near_enough(least + fixed) || least + fixed >= o_.settled_mm ||
           std::max(size, s.moved) < std::max(kSmallestQuad, patches.stays(target.cell, piece.quad)) ||
           ++examined_ > kMostPieces || !std::isfinite(least)) {
         proven_ = std::min(proven_, std::isfinite(least) ? least : -widest_);

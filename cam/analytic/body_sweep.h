@@ -39,8 +39,10 @@ struct SweptGapOptions {
   double contact_proof_mm = proof::ProofLimits{}.proof_mm;  ///< ... the bound lies within this of the least gap that
                                                             ///< was found, but for the motion's own deviations
   double proof_mm = 0.01;                                   ///< else within this
-  bool touching = false;         ///< the body may touch: tangent planes where it comes nearest
-  bool flanks_only = false;      ///< gaps to flanks; everything else is not looked at
+  double asked_mm =
+      -INFINITY;             ///< where the least gap found is no less, the bound is followed until it is no less, too
+  bool touching = false;     ///< the body may touch: tangent planes where it comes nearest
+  bool flanks_only = false;  ///< gaps to flanks; everything else is not looked at
   double settled_mm = INFINITY;  ///< a bound above this is good enough, however much larger the least gap is
 };
 

@@ -21,6 +21,7 @@ namespace {
 constexpr std::size_t kChunk =
     256;  // motions that one thread checks one after another; the same on any number of threads
 constexpr std::size_t kTogether = 256 * kChunk;  // that wait for all threads
+constexpr std::size_t kWave = 64;                // chunks behind which a path that is refused is followed no farther
 constexpr double kBodyLook = 0.3;  // mm: gaps of shank and holder are followed this far beyond the clearance
 constexpr double kAhead =
     0.4;  // mm: and this much farther where a body is looked at anew, so that later motions need not
@@ -124,6 +125,7 @@ class Chunk {
     ++out_.motions;
   }
 
+  [[nodiscard]] const proof::GougeResult& so_far() const { return out_; }
   proof::GougeResult finish() {
     take(-1);
     return std::move(out_);
@@ -185,6 +187,7 @@ class Chunk {
     look.contact_mm = kContact;
     look.contact_proof_mm = o_.limits.proof_mm;
     look.proof_mm = 0.5 * kGapStep;
+    look.asked_mm = o_.limits.clearance_mm;
     const auto gap = swept_gap(part_, body.frustum, m, look);
     body = {body.frustum, true, m.tip_to, m.axis_to, gap.proven_mm};
     out_.clearance_measured_mm = std::min({out_.clearance_measured_mm, gap.measured_mm, enough});
@@ -328,9 +331,29 @@ std::vector<path::ToolMotion> GougeCheck::motions_of(const path::ClPath& path) {
   return toothpath::path::motions_of(path);
 }
 
+/// The motions of one tool in their order, all of those beside the first that is refused left out: a path that is wrong
+/// in many places costs no more than one that is right.
+proof::GougeResult GougeCheck::until_fault(const std::vector<path::ToolMotion>& motions, std::size_t tool) const {
+  const std::size_t count = (motions.size() + kChunk - 1) / kChunk;
+  const WorkShare all{double(motions.size())};
+  auto out = proof::no_motion_yet(options_.limits.clearance_mm);
+  for (std::size_t from = 0; from < count && passes(out); from += kWave) {
+    std::vector<proof::GougeResult> wave(std::min(kWave, count - from));
+    WorkShare share(double(wave.size()), double(wave.size() * kChunk));
+    tbb::parallel_for(std::size_t(0), wave.size(), [&](std::size_t n) {
+      Chunk chunk(part_, tools_, options_, false);
+      const std::size_t begin = (from + n) * kChunk, end = std::min(motions.size(), begin + kChunk);
+      for (std::size_t k = begin; k < end && passes(chunk.so_far()); ++k) chunk.check(motions[k], int(tool));
+      wave[n] = chunk.finish();
+      share.add();
+    });
+    for (const auto& chunk : wave) proof::add_result(out, chunk);
+  }
+  return out;
+}
+
 Result<proof::CheckedClPath> GougeCheck::check_path(path::ClPath path) const {
-  std::vector<int> tool_of_operation(std::size_t(path.operation) + 1, path.tool);
-  const auto r = check(path::motions_of(path), tool_of_operation);
+  const auto r = until_fault(path::motions_of(path), std::size_t(path.tool));
   if (passes(r)) return proof::CheckedClPath(std::move(path));
   if (!r.worst.empty()) {
     const auto& w = r.worst.front();
@@ -339,11 +362,13 @@ Result<proof::CheckedClPath> GougeCheck::check_path(path::ClPath path) const {
                      "operation {} ({}): the rapid to CL record {} runs through the blank", path.operation,
                      path.operation_type, w.line);
     if (!cuts(w.body))
-      return fail_as(DiagnosticKind::verification,
-                     "operation {} ({}), CL record {}: the {} of tool {} comes within {:.4f} mm of the teeth at radius "
-                     "{:.3f}, height {:.3f}; the clearance is {:.4f}",
-                     path.operation, path.operation_type, w.line, w.body, tools_[std::size_t(path.tool)].number,
-                     -w.depth_mm, w.radius_mm, w.height_mm, options_.limits.clearance_mm);
+      return fail_as(
+          DiagnosticKind::verification,
+          "operation {} ({}), CL record {}: the {} of tool {} comes within {:.4f} mm of the teeth at radius "
+          "{:.3f}, height {:.3f}; the clearance is {:.4f}{}",
+          path.operation, path.operation_type, w.line, w.body, tools_[std::size_t(path.tool)].number, -w.depth_mm,
+          w.radius_mm, w.height_mm, options_.limits.clearance_mm,
+          -w.depth_mm < options_.limits.clearance_mm ? "" : fmt::format(", of which {:.4f} is proven", r.clearance_mm));
     return fail_as(DiagnosticKind::verification,
                    "operation {} ({}), CL record {}: the {} cuts {:.4f} mm (bound) into {} of zone {} at radius "
                    "{:.3f}, height {:.3f}; the gouge tolerance is {:.4f}",

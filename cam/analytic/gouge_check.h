@@ -44,7 +44,8 @@ class GougeCheck {
   /// Is everything within the options?
   [[nodiscard]] bool passes(const proof::GougeResult& result) const;
 
-  /// The only maker of a CheckedClPath. On failure a verification diagnostic with the deepest place.
+  /// The only maker of a CheckedClPath. On failure a verification diagnostic with the deepest of the places that were
+  /// found: a path that is refused is not followed to its end.
   [[nodiscard]] Result<proof::CheckedClPath> check_path(path::ClPath path) const;
 
   /// The motions of a CL path in the order of its records.
@@ -52,6 +53,7 @@ class GougeCheck {
 
  private:
   friend class GougeStream;
+  [[nodiscard]] proof::GougeResult until_fault(const std::vector<path::ToolMotion>& motions, std::size_t tool) const;
   const GearDistance& part_;
   std::vector<tool::ProofTool> tools_;
   GougeCheckOptions options_;
