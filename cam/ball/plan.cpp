@@ -36,13 +36,13 @@ constexpr double kStockShare = 0.15;
 /// Hops in which the axis turns keep this much more than the clearance, mm: they are looked at in steps.
 constexpr double kTurnMargin = 0.02;
 
-/// Roughing works on tables of the offset walls: this covers the sag between their entries, mm.
-constexpr double kRoughingPad = 0.004;
-
 /// What is tried where a tool has no passes: shares of its diameter; of the module, how much farther out a zone begins
 /// that begins within `kCloseToLimit` of its limit; and to which that is told, mm.
 constexpr double kSmallerBalls[] = {0.85, 0.7, 0.5, 0.3}, kFartherOut[] = {0.02, 0.05, 0.1, 0.2, 0.4};
 constexpr double kCloseToLimit = 0.5, kToldSize = 0.01;
+
+/// Steps, of the ball radius, in which the ways of a pass are looked at.
+constexpr double kLookOfWay = 0.2;
 
 // mm beyond the stock that a hop looks for it.
 constexpr double kStockMargin = 0.05;
@@ -86,6 +86,7 @@ class Planner::Work {
       }
       if (auto refusal = lead_tool(n, int(zone), (*zones[zone]).value(), plan_.path, plan_.summary)) return *refusal;
     }
+    if (plan_.path.records.empty()) return nothing_to_cut(n);
     return std::move(plan_);
   }
 
@@ -121,8 +122,30 @@ class Planner::Work {
         {}};
     if (auto refusal = check_width(out.sheet, key_of(n), zone, tool)) return *refusal;
     if (auto refusal = roughing ? rough(n, room, out) : finish(n, zone, room, out)) return *refusal;
+    if (auto refusal = check_ways(out.passes, tool, key_of(n), zone)) return *refusal;
     out.summary.passes = int(out.passes.size());
     return out;
+  }
+
+  /// An operation for which no pass is left.
+  [[nodiscard]] PlanRefusal nothing_to_cut(int n) const {
+    const auto& op = operation(n);
+    const tool::ToolAssembly& tool = tool_of(n);
+    if (op.type == path::OperationType::roughing)
+      return {key_of(n),
+              fail("roughing with tool {} has nothing to cut: none of its {} passes meets more than {:.4f} mm ({:g} of "
+                   "its diameter) of what the operations before it leave; leave this operation out, or take a smaller "
+                   "tool or a smaller allowance (now {:g})",
+                   tool.number, plan_.summary.skipped_passes, path::kSkinShare * tool.diameter_mm, path::kSkinShare,
+                   op.allowance_mm)};
+    std::vector<const char*> regions;
+    for (const path::Region region : path::kRegions)
+      if (op.regions[region]) regions.push_back(to_string(region));
+    return {
+        key_of(n),
+        fail("tool {} finds no pass on {}: with a ball of {:.4f} mm and an allowance of {:g} mm no place of the tooth "
+             "space is cut there alone; leave this operation out, or name more regions",
+             tool.number, fmt::join(regions, ", "), 2 * tool.radius_mm(), op.allowance_mm)};
   }
 
   /// In words: the largest ball and the least inner radius with which the same passes were planned; as trials.
@@ -468,14 +491,44 @@ class Planner::Work {
       }
     });
     for (const auto& [point, cut] : first)
-      if (point)
-        return PlanRefusal{
-            key + ".tool",
-            fail("tool {} in zone {}: its ball of radius {:.4f} mm would cut {:.4f} mm into the finished surface with "
-                 "its centre at radius {:.4f}, height {:.4f}; the limit is {:.4f} mm{}",
-                 tool.number, zone, R, cut, std::hypot(point->centre.x(), point->centre.y()), point->centre.z(),
-                 o_.limits.gouge_mm, beside_the_limit(zone))};
+      if (point) return cuts_in(tool, key, zone, cut, point->centre, "");
     return {};
+  }
+
+  /// The same of the ways between the points: a surface that jumps from one wall of a corner to another is no way for a
+  /// ball.
+  [[nodiscard]] std::optional<PlanRefusal> check_ways(const std::vector<BallPass>& passes,
+                                                      const tool::ToolAssembly& tool, const std::string& key,
+                                                      int zone) const {
+    const double R = tool.radius_mm();
+    struct Deep {
+      Vec3 centre = Vec3::Zero();
+      double cut = 0;
+    };
+    std::vector<Deep> first(passes.size());  // in every pass
+    tbb::parallel_for(std::size_t(0), passes.size(), [&](std::size_t n) {
+      const auto& q = passes[n].points;
+      for (std::size_t k = 1; k < q.size() && first[n].cut == 0; ++k) {
+        const Vec3 way = q[k].centre - q[k - 1].centre;
+        const int parts = int(std::ceil(way.norm() / (kLookOfWay * R)));
+        for (int i = 1; i < parts; ++i) {
+          const Vec3 centre = q[k - 1].centre + double(i) / parts * way;
+          const double cut = R - part_.nearest(centre, R + 0.01).distance;
+          if (cut > o_.limits.gouge_mm && cut > first[n].cut) first[n] = {centre, cut};
+        }
+      }
+    });
+    for (const auto& [centre, cut] : first)
+      if (cut > 0) return cuts_in(tool, key, zone, cut, centre, " on the way between two places of a pass");
+    return {};
+  }
+  [[nodiscard]] PlanRefusal cuts_in(const tool::ToolAssembly& tool, const std::string& key, int zone, double cut,
+                                    const Vec3& centre, const char* where) const {
+    return {key + ".tool",
+            fail("tool {} in zone {}: its ball of radius {:.4f} mm would cut {:.4f} mm into the finished surface with "
+                 "its centre at radius {:.4f}, height {:.4f}{}; the limit is {:.4f} mm{}",
+                 tool.number, zone, tool.radius_mm(), cut, radius(centre), centre.z(), where, o_.limits.gouge_mm,
+                 beside_the_limit(zone))};
   }
 
   /// Of a zone that begins close to where its flanks begin, in words.

@@ -19,6 +19,10 @@
 
 namespace toothpath::ball {
 
+/// Roughing works on tables of the offset walls: this covers the sag between their entries, so that much more than its
+/// allowance may stay. mm
+inline constexpr double kRoughingPad = 0.004;
+
 struct PlanOptions {
   proof::ProofLimits
       limits;  ///< of shank and holder the clearance; chords of any operation may use a part of the gouge tolerance

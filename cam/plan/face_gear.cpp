@@ -14,6 +14,7 @@ namespace toothpath::plan {
 namespace {
 
 constexpr double kLeastStock = 0.85;  // of the allowance, on every flank: a program is refused below 0.8
+constexpr double kAskedStock = 0.8;   // of the allowance, which the proof asks for
 constexpr double kLiftShare = 0.5;
 constexpr double kAxisStands = 1e-9;  // of a unit vector: less is no turn
 constexpr int kAllAxes = 5;           // X, Y, Z and two rotaries
@@ -97,6 +98,7 @@ class FaceGearPlanner {
     if (const auto& refusal = part_.refusal()) return ball::PlanRefusal{"gear." + refusal->key, refusal->diagnostic};
     for (std::size_t n = 0; n < operations_.size(); ++n) {
       if (progress) progress(to_string(operations_[n].type));
+      if (auto gone = stock_is_gone(n)) return std::move(*gone);
       auto refusal = operations_[n].type == path::OperationType::line_milling ? line(int(n)) : ball(int(n));
       if (refusal) {
         if (!o_.trial) widen_trials(int(n), *refusal);
@@ -109,6 +111,24 @@ class FaceGearPlanner {
   }
 
  private:
+  /// An operation that is asked to leave more than one before it left where both cut.
+  [[nodiscard]] std::optional<ball::PlanRefusal> stock_is_gone(std::size_t n) const {
+    const path::MillingOperation& op = asked_[n];
+    for (std::size_t k = 0; k < n; ++k) {
+      const path::MillingOperation& before = asked_[k];
+      const bool same = std::any_of(path::kRegions.begin(), path::kRegions.end(),
+                                    [&](path::Region r) { return op.regions[r] && before.regions[r]; });
+      const double pad = before.type == path::OperationType::roughing ? ball::kRoughingPad : 0;
+      if (!same || before.allowance_mm + pad >= kAskedStock * op.allowance_mm) continue;
+      return ball::PlanRefusal{
+          fmt::format("operation[{}].allowance", n),
+          fail("allowance = {:g} mm cannot be left: operation {} ({}) before it has cut down to {:g} mm already, below "
+               "{:.4g} mm ({} of it); {:g} or less would do, or a larger allowance of operation {}",
+               op.allowance_mm, k, to_string(before.type), before.allowance_mm, kAskedStock * op.allowance_mm,
+               kAskedStock, before.allowance_mm, k)};
+    }
+    return {};
+  }
   /// The tools that would do for an operation must do for all others with that tool: what the message says is right the
   /// first time.
   void widen_trials(int n, ball::PlanRefusal& refusal) const {

@@ -63,5 +63,31 @@ TEST(OwnCheck, AGapThatIsHardlyMoreThanAskedIsProven) {
   EXPECT_GT(undecided, 3);
 }
 
+ball::PlanRefusal refusal_of(std::vector<path::MillingOperation> operations) {
+  auto parameters = test::small_spur();
+  parameters.zones.front().outer_radius_mm = 61;
+  const auto gear = test::made(parameters);
+  const std::vector tools = {test::ball_mill(1, 6, 0.95, 16, 10)};
+  const analytic::GearDistance part(gear, ball::reach_of(tools));
+  const auto plan = plan::plan_face_gear(part, tools, operations, {});
+  EXPECT_FALSE(plan.has_value());
+  return plan.has_value() ? ball::PlanRefusal{} : *plan.refused();
+}
+
+TEST(OwnCheck, AnOperationWithNothingToCutSaysWhy) {
+  const auto refusal = refusal_of({test::roughing(0, 0.8, 0.5, 0.1), test::roughing(0, 0.8, 0.5, 0.1)});
+  EXPECT_EQ(refusal.key, "operation[1]");
+  EXPECT_NE(refusal.diagnostic.message.find("has nothing to cut: none of its "), std::string::npos)
+      << refusal.diagnostic.message;
+}
+
+TEST(OwnCheck, StockThatIsGoneCannotBeLeft) {
+  const auto refusal = refusal_of({test::roughing(0, 0.8, 0.5, 0.05), test::finishing(0, 0.02, 0.004, 0.08)});
+  EXPECT_EQ(refusal.key, "operation[1].allowance");
+  EXPECT_EQ(refusal.diagnostic.message,
+            "allowance = 0.08 mm cannot be left: operation 0 (roughing) before it has cut down to 0.05 mm already, "
+            "below 0.064 mm (0.8 of it); 0.05 or less would do, or a larger allowance of operation 0");
+}
+
 }  // namespace
 }  // namespace toothpath
