@@ -316,7 +316,9 @@ class FinishingPlanner {
       a[j] = count_.count_at(j, last_sigma(corners.plus[j].from)) - begin_a[j];
       c[j] = totals[j] - count_.count_at(j, 5 - last_sigma(5 - corners.minus[j].to)) - begin_c[j];
     }
-    const double end = to_corner() ? 0.5 : 0;  // the corner's own pass is the last one
+    // The corner's own pass is the last one. Where the fillet is left out, those of the flank end at the fillet line,
+    // half a step from what cuts the fillet.
+    const double end = o_.regions[path::Region::fillet] ? 0.5 : 0;
     const auto passes = [&](const std::vector<double>& counts) {
       const double most = most_on_ring(counts);
       return most <= 0 ? 0 : std::max(1, int(std::ceil(most - end - 1e-9 * (end == 0))));

@@ -32,14 +32,15 @@ double distance_to(const Segment& s, const Vec3& p) {
 struct Highest {
   double left = 0, sigma = 0, r = 0;
 };
-path::ByRegion<Highest> highest_places(const analytic::GearDistance& part, const std::vector<Segment>& segments) {
-  constexpr int kRadii = 48, kPlacesOfPiece = 160;
+path::ByRegion<Highest> highest_places(const analytic::GearDistance& part, const std::vector<Segment>& segments,
+                                       int radii = 48) {
+  constexpr int kPlacesOfPiece = 160;
   const auto& space = part.space(0);
   const double inner = space.ring().zone.inner_radius_mm, outer = space.ring().zone.outer_radius_mm;
   const face_gear::OffsetSheet surface(space, 0, inner, outer, 17);
   path::ByRegion<Highest> out;
-  for (int j = 0; j <= kRadii; ++j) {
-    const double r = inner + (outer - inner) * j / kRadii;
+  for (int j = 0; j <= radii; ++j) {
+    const double r = inner + (outer - inner) * j / radii;
     std::vector<Segment> near;
     for (const auto& s : segments)
       if (std::abs(std::hypot(s.from.x(), s.from.y()) - r) < 6 * s.ball_radius + (s.to - s.from).norm())
@@ -133,6 +134,31 @@ TEST(SmallHeights, EveryRegionKeepsTheOneOfItsOwn) {
       EXPECT_LE(most[region].left, asked[region] + 0.002);
       EXPECT_GT(most[region].left, 0.3 * asked[region]);
     }
+  }
+}
+
+// Operations that share the regions of a space: between the last pass of the one and the first of the other nothing
+// stands higher than asked, with a ball that touches two walls of a corner, too.
+TEST(SmallHeights, BordersBetweenOperationsKeepTheCusp) {
+  auto parameters = test::small_spur();
+  parameters.zones.front().outer_radius_mm = 61;
+  const face_gear::FaceGear gear = test::made(parameters);
+  constexpr double kAsked = 0.014;
+  constexpr double ball = 1.5;
+  for (const path::ByRegion<bool>& first : {path::ByRegion<bool>{{true, false, false}}, {{true, false, true}}}) {
+    const std::vector tools = {test::ball_mill(ball, 6, 0.95 * ball, 16, 10)};
+    const analytic::GearDistance part(gear, ball::reach_of(tools));
+    std::vector operations = {test::finishing(0, kAsked, 0.002), test::finishing(0, kAsked, 0.002)};
+    operations[0].regions = first;
+    for (const path::Region region : path::kRegions) operations[1].regions[region] = !first[region];
+    const auto plan = plan::plan_face_gear(part, tools, operations, {});
+    ASSERT_TRUE(plan.has_value()) << plan.refused()->diagnostic.message;
+    auto segments = fed(plan.value().paths[0], 0.5 * ball);
+    const auto below = fed(plan.value().paths[1], 0.5 * ball);
+    segments.insert(segments.end(), below.begin(), below.end());
+    const Highest flank = highest_places(part, segments, 6)[path::Region::flank];
+    EXPECT_LE(flank.left, kAsked + 0.002)
+        << ball << " " << first[path::Region::fillet] << first[path::Region::root] << " sigma " << flank.sigma;
   }
 }
 
