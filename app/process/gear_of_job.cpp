@@ -4,6 +4,7 @@
 
 #include "cam/finger/milling.h"
 #include "cam/tool/cutters.h"
+#include "geometry/base/angle.h"
 #include "machines/machine_file.h"
 #include "postproc/bodies/of_machine.h"
 #include "postproc/controls/of_machine.h"
@@ -117,6 +118,13 @@ void refuse_planes(const job::Job& job, const machines::Machine& machine, const 
     errors.push_back(fail_at(at, "tilted_planes: {}; this is {}. Leave it out{}", planes.error().message, machine.name,
                              machine.tcp == machines::TcpMode::none ? ": the rotaries then turn by words of their own"
                                                                     : ": the program is then written with TCP"));
+  else if (dialect.planes.zero.empty())
+    for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k)
+      if (const machines::RotaryAxis& axis = machine.chain.rotary(k); axis.zero_rad != 0)
+        errors.push_back(fail_at(at,
+                                 "tilted_planes: dialect \"{}\" counts {} from 0 in them, axes.{}.zero = {:g} deg of "
+                                 "{}. Leave it out, or home the axis so that its zero is 0",
+                                 dialect.name, axis.letter, axis.letter, degrees(axis.zero_rad), machine.name));
 }
 
 /// What a machine cannot check, and what its file lacks for it.

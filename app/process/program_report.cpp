@@ -86,6 +86,8 @@ report::RunReport report_of(const std::string& command, const job::Job& job, con
         "{}: program.tilted_planes: {}", job.file,
         text::expanded(control->words.planes.assumed, {{"axis", std::string(1, machine.chain.rotary(1).letter)}})
             .value_or(control->words.planes.assumed)));
+  for (std::string& zero : controls::trusted_zeros(machine, job.program.tilted_planes))
+    report.assumed.push_back(fmt::format("{}: {}", job.machine.file, std::move(zero)));
   report.warnings = job.warnings;
   report.warnings.insert(report.warnings.end(), gear_warnings.begin(), gear_warnings.end());
   note_check_trust(report, job, machine);

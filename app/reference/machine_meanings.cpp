@@ -92,7 +92,7 @@ constexpr Meaning kMachineMeanings[] = {
      "parallel "
      "to Z."},
     {"axes.*.sign", "1: turns in the sense of ISO 841; -1: reversed."},
-    {"axes.*.zero", "The command at which the axis stands at its zero."},
+    {"axes.*.zero", "The command at which the axis stands at its zero; with TCP under LinuxCNC and Fanuc 0 alone."},
     {"axes.*.rollover",
      "`true`: the control counts the axis from 0 to 360 deg and it turns without end, min and max are left out "
      "([dialects](dialects.md#rotaries-that-roll-over)); `false`: words go on beyond a turn, 370 and not 10."},

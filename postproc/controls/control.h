@@ -44,6 +44,8 @@ struct Control {
   probing::ProbingWords probe = nullptr;               ///< a probing program in its words; null: it has none
   readback::FindActingComment acting_comment =
       nullptr;  ///< null: its comments do nothing; its reader refuses them, too
+  /// Of this machine, besides `words.tcp_notes`; null: none.
+  text::NcLinesOfText (*tcp_notes)(const machines::KinematicChain& chain) = nullptr;
 };
 
 }  // namespace toothpath::controls

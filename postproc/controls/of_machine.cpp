@@ -30,6 +30,13 @@ int output_of(std::string_view word) {
   return error == std::errc() && end == word.data() + word.size() && word[5] != '-' && n < 64 ? n : -1;
 }
 
+/// Every rotary is at its zero at 0.
+bool counts_from_zero(const machines::KinematicChain& chain) {
+  for (std::size_t k = 0; k < chain.rotary_count(); ++k)
+    if (chain.rotary(k).zero_rad != 0) return false;
+  return true;
+}
+
 /// Judges a machine file by the words of its control, key by key.
 class Judge {
  public:
@@ -93,8 +100,20 @@ class Judge {
       refuse("tcp", "tcp with dialect \"{}\" needs post.tcp_on and post.tcp_off: its codes are site data", words_.name);
     else if (!(on && off))
       refuse("tcp", "dialect \"{}\" has no TCP: tcp = \"none\" (joint output) is supported", words_.name);
-    else if (machine_.tcp == machines::TcpMode::vectors && words_.vector_words[0].empty())
+    else if (words_.tcp_zero.empty() && words_.write == nullptr) zeros();
+    if (on && off && machine_.tcp == machines::TcpMode::vectors && words_.vector_words[0].empty())
       refuse("tcp", "dialect \"{}\" has no tool vectors: tcp = \"none\" and \"angles\" are supported", words_.name);
+  }
+
+  /// TCP of a control that counts its rotaries from 0 alone.
+  void zeros() {
+    for (std::size_t k = 0; k < machine_.chain.rotary_count(); ++k)
+      if (const machines::RotaryAxis& axis = machine_.chain.rotary(k); axis.zero_rad != 0)
+        refuse(fmt::format("axes.{}.zero", axis.letter),
+               "axes.{0}.zero = {1:g} deg: with TCP dialect \"{2}\" takes the {3} as {4} at {0} = 0; home {0} so that "
+               "it is, with zero = 0, or take tcp = \"none\"",
+               axis.letter, degrees(axis.zero_rad), words_.name, machine_.chain.in_table(k) ? "table" : "head",
+               machine_.chain.in_table(k) ? "level and straight" : "upright");
   }
 
   void index_offset() {
@@ -349,6 +368,8 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
   if (!d.loop.offset_on.empty() && post.index_offset.empty()) d.loop.frame_on = d.loop.frame_off = {};
   d.loop.index_offset = post.index_offset;
   if (!post.tcp_on.empty()) d.tcp_on = post.tcp_on;
+  if (const Control* control = find(machine.dialect); control->tcp_notes != nullptr)
+    d.tcp_notes = control->tcp_notes(machine.chain);
   if (!post.tcp_off.empty()) {
     d.tcp_off = post.tcp_off;
     if (!d.tcp_starts_at_zero) d.safe_start.insert(d.safe_start.end(), d.tcp_off.begin(), d.tcp_off.end());
@@ -379,6 +400,18 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) d.clamps[k] = machine.chain.rotary(k).clamp;
   for (const auto& [coolant, words] : post.coolant) d.coolant[coolant] = words;
   return d;
+}
+
+std::vector<std::string> trusted_zeros(const machines::Machine& machine, bool planes) {
+  const Control* control = find(machine.dialect);
+  if (control == nullptr || (!planes && machine.tcp == machines::TcpMode::none)) return {};
+  const std::string& trust = planes ? control->words.planes.zero : control->words.tcp_zero;
+  std::vector<std::string> out;
+  for (std::size_t k = 0; k < machine.chain.rotary_count() && !trust.empty(); ++k)
+    if (const machines::RotaryAxis& axis = machine.chain.rotary(k); axis.zero_rad != 0)
+      out.push_back(fmt::format("axes.{}.zero = {:g} deg, {}", axis.letter, degrees(axis.zero_rad),
+                                text::expanded(trust, {{"axis", std::string(1, axis.letter)}}).value_or(trust)));
+  return out;
 }
 
 std::array<char, 5> axis_letters(const machines::Machine& machine) {
@@ -415,7 +448,8 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
       0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(control->words.format.rotary_decimals));
   if (control->words.max_inverse_time > 0) c.shortest_feed_minutes = 1 / control->words.max_inverse_time;
   if (machine.tcp != machines::TcpMode::none) c.chain = machine.chain;
-  if (!control->words.planes.on.empty()) c.plane_chain = machine.chain;
+  if (const text::NcPlanes& planes = control->words.planes; !planes.on.empty())
+    if (!planes.zero.empty() || counts_from_zero(machine.chain)) c.plane_chain = machine.chain;
   c.top_mm = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
   c.exact_path_mm = machine.exact_corner_mm();
   c.corner_mm = machine.post.corner_tolerance_mm;

@@ -28,6 +28,10 @@ namespace toothpath::controls {
 /// coolants. Errors: the first of judge(); smoothing that is not stated whole.
 [[nodiscard]] Result<text::NcDialect> dialect_of(const machines::Machine& machine);
 
+/// Rotaries that do not count from 0 while the control calculates with them: which of its data must say so, a line
+/// each, "axes.A.zero = 90 deg, ..". @param planes in tilted planes; else with the machine's TCP
+[[nodiscard]] std::vector<std::string> trusted_zeros(const machines::Machine& machine, bool planes);
+
 /// X Y Z and the rotaries in the machine's order; 0: no such axis.
 [[nodiscard]] std::array<char, 5> axis_letters(const machines::Machine& machine);
 

@@ -11,16 +11,23 @@ namespace toothpath::joints {
 namespace {
 constexpr double kLeastUp =
     0.1;  // of the tool axis, seen from the table: a flatter tool would hardly rise along itself
+
+/// Words of the rotaries where they stand at their zeros.
+RotaryPair at_zero(const machines::KinematicChain& chain) {
+  RotaryPair zero{};
+  for (std::size_t k = 0; k < chain.rotary_count(); ++k) zero[k] = chain.rotary(k).zero_rad;
+  return zero;
 }
+}  // namespace
 
 /// Height over the part, table frame.
 double ToothBuilder::link_height() const {
-  return body_top(chain_, job_.gear, job_.body, {0, 0}) + job_.options.clearance_margin_mm;
+  return body_top(chain_, job_.gear, job_.body, at_zero(chain_)) + job_.options.clearance_margin_mm;
 }
 
 /// Zero, of a rotary that rolls over the nearest whole turn.
 RotaryPair ToothBuilder::zero_rotaries() const {
-  std::vector<RotaryPair> zero = {{0, 0}};
+  std::vector<RotaryPair> zero = {at_zero(chain_)};
   roll_to(chain_, words_.joints(last_).rotary_rad, zero);
   return zero.front();
 }

@@ -95,7 +95,8 @@ NcExecution::Problem NcExecution::zeros_allow_end() const {
 }
 
 NcExecution::Problem NcExecution::define_plane(const Vec3& origin_mm, const Mat3& rotation, std::string_view word) {
-  if (!control_.plane_chain) return fmt::format("{}: this control has no tilted planes", word);
+  if (!control_.plane_chain)
+    return fmt::format("{}: this control has no tilted planes, or none with a zero of a rotary that is not 0", word);
   if (!control_.plane_chain->head.empty() || control_.plane_chain->table.size() != 2)
     return fmt::format("{} on a machine without two rotaries in its table is not in the subset", word);
   if (tcp_) return fmt::format("{} with TCP on", word);

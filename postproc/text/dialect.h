@@ -90,6 +90,7 @@ struct NcPlanes {
   /// that of the tooth, and the variable that holds the sum. Empty: `NcLoop::index` and the angle.
   std::string index_line, index;
   std::string assumed;  ///< of the control, with {axis} that tilts
+  std::string zero;     ///< as NcDialect::tcp_zero
 };
 
 /// What a control wants to read.
@@ -199,7 +200,11 @@ struct NcDialect {
   bool tcp_starts_at_zero = false;            ///< the table frame is frozen where TCP starts
   std::array<std::string, 3> vector_words{};  ///< ahead of the components of the tool axis; empty: no vectors
   std::string vector_feed;                    ///< instead of `feed` in blocks with a vector
-  std::string tcp_note;  ///< comment at the top of programs with TCP: what the control must be set to
+  /// What the control must be set to for TCP, lines for the top of programs and the set-up sheet.
+  NcLinesOfText tcp_notes;
+  /// {axis}, whose `zero` in the machine file is not 0: which data of the control must say so for TCP. Empty: it counts
+  /// from 0 whatever they say, and machines with another zero are refused.
+  std::string tcp_zero;
 
   NcLoop loop;
   NcRollover rollover;

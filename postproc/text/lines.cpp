@@ -115,8 +115,8 @@ std::vector<std::string> header_comments(const joints::AxisProgram& program, con
   if (program.loop && program.tcp != machines::TcpMode::none && !dialect.loop.index_offset.empty())
     out.push_back(
         fmt::format("{} IS OVERWRITTEN AND TURNED TO THE TEETH; LINEAR_UNITS MUST BE MM", dialect.loop.index_offset));
-  if (program.tcp != machines::TcpMode::none && !dialect.tcp_note.empty())
-    out.push_back(numbers::comment_text(dialect.tcp_note));
+  if (program.tcp != machines::TcpMode::none)
+    for (const std::string& note : dialect.tcp_notes) out.push_back(numbers::comment_text(note));
   if (zero_turns_frame(program, dialect)) out.push_back(numbers::comment_text(dialect.loop.zero_note));
   for (std::size_t a = 3; a < 5; ++a)
     if (program.rollover[a]) {

@@ -86,5 +86,35 @@ TEST_F(AssumedPivot, TheReportNamesTheBytesOnTheDisk) {
   EXPECT_LT(program.size() - last, 60u);
 }
 
+// Danger 32: a tilt axis that is at its zero at 90 deg. With TCP the control's data must hold that, or the file is
+// refused where it says so.
+TEST_F(AssumedPivot, ZeroUnderTcpIsNamedOrRefused) {
+  std::string machine =
+      replaced(file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml"), "sign = -1\nmin = -110.0\nmax = 60.0",
+               "zero = 90.0\nsign = -1\nmin = -20.0\nmax = 150.0");
+  machine = replaced(machine, "tcp = \"none\"", "tcp = \"angles\"");
+  write_file(dir / "m.toml", replaced(machine, "\"linuxcnc\"", "\"siemens\""));
+  const Finished run = run_program({"run", job(""), "--out", dir / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string zero = "axes.A.zero = 90 deg, TRAORI counts A from it, machine data 24510";
+  EXPECT_NE(file_text(dir / "out/report.json").find("m.toml: " + zero), std::string::npos);
+  for (const char* page : {"out/report.html", "out/setup.html"})
+    EXPECT_NE(file_text(dir / page).find(zero), std::string::npos) << page;
+  EXPECT_NE(file_text(dir / "out/setup.html").find("TCP: machine data 21104 ORI_IPO_WITH_G_CODE = 1"),
+            std::string::npos);
+  const std::string program = file_text(dir / "out/program.mpf");
+  EXPECT_LT(program.find("AXES.A.ZERO = 90 DEG"), program.find("\nG")) << program.substr(0, 900);
+
+  write_file(dir / "m.toml", machine + "\n[post]\ntcp_on = [\"M428\"]\ntcp_off = [\"M429\"]\n");
+  const Finished refused = run_program({"run", job(""), "--out", dir / "other"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(
+      refused.err.find("m.toml:41:8: error: axes.A.zero = 90 deg: with TCP dialect \"linuxcnc\" takes the table as "
+                       "level and straight at A = 0"),
+      std::string::npos)
+      << refused.err;
+  EXPECT_TRUE(names_in(dir / "other").empty());
+}
+
 }  // namespace
 }  // namespace toothpath::test

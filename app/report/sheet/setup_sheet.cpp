@@ -1,5 +1,7 @@
 #include "app/report/sheet/setup_sheet.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "app/report/sheet/part_swing.h"
@@ -48,6 +50,12 @@ std::string offset_text(const std::string& work_offset, const machines::Machine&
   return dialect ? text::offset_trust(*dialect, work_offset, controls::axis_letters(machine)) : std::string();
 }
 
+/// What the control must hold besides for TCP.
+std::string tcp_text(const machines::Machine& machine) {
+  const auto dialect = controls::dialect_of(machine);
+  return dialect ? fmt::format("{}", fmt::join(dialect->tcp_notes, "; ")) : std::string();
+}
+
 void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part, const machines::Machine& machine,
                      const report::RunReport& report) {
   const joints::Setup& setup = *job.setup;
@@ -64,6 +72,8 @@ void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part,
   sheet.row({"work offset", fmt::format("{} = machine {}", setup.work_offset, coordinates(setup.work_offset_at_mm))});
   if (const std::string trust = offset_text(setup.work_offset, machine); !trust.empty())
     sheet.row({"work offset, besides", trust});
+  if (machine.tcp != machines::TcpMode::none && !job.program.tilted_planes)
+    if (const std::string notes = tcp_text(machine); !notes.empty()) sheet.row({"TCP of the control", notes});
   sheet.row({"gear origin, machine", coordinates(setup.origin_mm)});
   sheet.row({"gear origin, " + setup.work_offset, coordinates(setup.origin_mm - setup.work_offset_at_mm)});
   sheet.row({"gear axis", setup.axis_up ? "up: teeth towards the spindle, gear X along machine X"

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "geometry/base/angle.h"
 #include "postproc/readback/execution.h"
 #include "postproc/readback/scanner.h"
 
@@ -127,6 +128,8 @@ class AptReader {
     top.rapid = top.machine_frame = true;
     top.has.fill(true);
     top.axis[2] = control_.top_mm;
+    for (std::size_t k = 0; k < control_.chain->rotary_count(); ++k)
+      top.axis[3 + k] = degrees(control_.chain->rotary(k).zero_rad);
     for (std::size_t a = 0; a < 5; ++a)
       if (control_.letters[a] == 0) top.has[a] = false;
     if (auto bad = move(top)) return bad;

@@ -50,7 +50,7 @@ text::NcDialect fanuc_words() {
   d.tcp_off = d.retract;
   d.tcp_starts_at_zero = true;
   d.offset_trust = "{offset} and EXT are 0 for {rotaries}; no G54.2 and no G54.4 is in force";
-  d.tcp_note = "TCP G43.4 FROM ROTARY ZERO, PARAMETERS 19696#5 WKP=0, 1401#1 LRP=1";
+  d.tcp_notes = {"TCP G43.4 from rotary zero, parameters 19696#5 WKP=0, 1401#1 LRP=1"};
   d.takes_smoothing = true;  // G5.1 Q1 and the like state no bound of their own
   d.planes.on = {"G68.2 X{plane_x} Y{plane_y} Z{plane_z} I{euler_turn} J{tilt} K{euler_spin}", "G53.1 P{pair}"};
   d.planes.off = {"G69"};

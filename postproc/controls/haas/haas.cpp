@@ -16,7 +16,7 @@ text::NcDialect words() {
   d.tcp_on.clear();
   d.tcp_off.clear();
   d.tcp_starts_at_zero = false;
-  d.tcp_note.clear();
+  d.tcp_notes.clear();
   d.offset_trust = "{offset} is 0 for {rotaries}; no G254 is in force";
   d.planes = {};  // G268 and G269 are an option
   d.loop.before = {"N{label} (OPERATION {operation})"};

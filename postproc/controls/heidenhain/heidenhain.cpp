@@ -22,6 +22,7 @@ text::NcPlanes planes() {
   p.index = "Q5";
   p.upper = "+";
   p.lower = "-";
+  p.zero = "PLANE SPATIAL counts {axis} from it, in the kinematics of the control";
   p.assumed =
       "SEQ+ of PLANE SPATIAL takes the pair with {axis} above its zero, SEQ- below; the preset is that of the part "
       "with all rotaries at zero; every rotary goes the nearer way";
@@ -82,6 +83,7 @@ text::NcDialect words() {
   d.contour_trust = "what cycle 32 says, by the manuals";
   d.tcp_on = {"FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"};
   d.tcp_off = {"FUNCTION RESET TCPM"};
+  d.tcp_zero = "TCPM counts {axis} from it, in the kinematics of the control";
   d.vector_words = {"TX", "TY", "TZ"};
   d.vector_feed = "LN";
   d.planes = planes();

@@ -134,6 +134,19 @@ std::string tool_table(std::span<const tool::ToolAssembly> tools) {
 
 bool has_offset(std::string_view name) { return number_of_offset(name) > 0; }
 
+/// Its modules know the tool by a pin alone. xyzbc-trt-kins of master had a wrong inverse for a while (PR 4546).
+text::NcLinesOfText tcp_notes(const machines::KinematicChain& chain) {
+  const bool trunnion = chain.head.empty() && chain.table.size() == 2 && chain.table[0].letter == 'C';
+  if (trunnion && chain.table[1].letter == 'A')
+    return {"TCP: motion.tooloffset.z must reach xyzac-trt-kins.tool-offset"};
+  if (trunnion && chain.table[1].letter == 'B')
+    return {"TCP: motion.tooloffset.z must reach xyzbc-trt-kins.tool-offset",
+            "xyzbc-trt-kins: none of master from 2025-06-26 to 2026-09-15, it errs"};
+  const bool head = chain.table.empty() && chain.rotary_index('B') && chain.rotary_index('C');
+  if (head) return {"TCP: 5axiskins.pivot-length is the pivot and motion.tooloffset.z"};
+  return {"TCP: motion.tooloffset.z must reach the kinematics"};
+}
+
 }  // namespace
 
 Control linuxcnc() {
@@ -144,7 +157,8 @@ Control linuxcnc() {
           false,
           ToolTable{"program_tools.tbl", tool_table},
           probing::g38_probing,
-          linuxcnc_acting_comment};
+          linuxcnc_acting_comment,
+          tcp_notes};
 }
 
 }  // namespace toothpath::controls

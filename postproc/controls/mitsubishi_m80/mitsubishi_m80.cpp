@@ -13,7 +13,7 @@ text::NcDialect words() {
   d.tcp_on.clear();
   d.tcp_off.clear();
   d.tcp_starts_at_zero = false;
-  d.tcp_note.clear();
+  d.tcp_notes.clear();
   d.offset_trust = "{offset} and EXT are 0 for {rotaries}; no G54.4 is in force";
   d.rollover.note = "{axis} ROLLS OVER: SHORTCUT OF THE ROTARY AXIS VALID, 8213=1";
   return d;

@@ -23,6 +23,7 @@ text::NcPlanes planes() {
   p.off = {"CYCLE800()"};
   p.upper = "1";
   p.lower = "-1";
+  p.zero = "CYCLE800 counts {axis} from it, offset of the rotary in the swivel data set";
   p.assumed =
       "CYCLE800 has one swivel data set, whose direction 1 is {axis} above its zero and -1 below; CYCLE800() turns "
       "nothing; every rotary goes the nearer way";
@@ -65,6 +66,8 @@ text::NcDialect words() {
   d.path_group_end = "FGROUP()";
   d.tcp_on = {"TRAORI", "{offset}", "ORIWKS", "ORIAXES"};
   d.tcp_off = {"TRAFOOF", "{offset}"};
+  d.tcp_notes = {"TCP: machine data 21104 ORI_IPO_WITH_G_CODE = 1, so that ORIAXES rules"};
+  d.tcp_zero = "TRAORI counts {axis} from it, machine data 24510 (24610, ..) TRAFO5_ROT_AX_OFFSET";
   d.vector_words = {"A3=", "B3=", "C3="};
   d.planes = planes();
   d.loop.form = text::NcLoop::Form::in_line;

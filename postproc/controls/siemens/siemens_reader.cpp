@@ -69,6 +69,7 @@ class Siemens {
     bool dwell = false, g75 = false, skip = false;
     bool whole = false;  // CYCLE800, WORKPIECE: a block of its own
     bool supa = false, g641 = false, g60 = false, traori = false, trafoof = false, rot = false;
+    bool oriwks = false, oriaxes = false;
     double rot_deg = 0;
     std::optional<std::size_t> trans;  // the rotary whose zero TRANS moves
     double trans_deg = 0;
@@ -422,7 +423,8 @@ class Siemens {
     } else if (name == "TRAFOOF") r.trafoof = true;
     else if (name == "SUPA") r.supa = true;
     else if (name == "COMPOF") return unsaid_.said(kCompressor), std::nullopt;
-    else if (name == "ORIWKS" || name == "ORIAXES") return std::nullopt;
+    else if (name == "ORIWKS") r.oriwks = true;
+    else if (name == "ORIAXES") r.oriaxes = true;
     else if (name == "MSG") return message(s);
     else if (name == "FGROUP" || name == "FGREF") return path_group(s, name == "FGREF");
     else if (name == "FP") {
@@ -640,8 +642,12 @@ class Siemens {
     if (r.d == 0) execution_.drop_length();
     if (r.d == 1)
       if (auto bad = placed(r.column, execution_.set_length(tool_))) return bad;
-    if (r.traori)
+    if (r.traori) {
       if (auto bad = placed(r.column, execution_.tcp_on())) return bad;
+      frame_said_ = axes_said_ = false;
+    }
+    frame_said_ = frame_said_ || r.oriwks;
+    axes_said_ = axes_said_ || r.oriaxes;
     if ((r.traori || r.trafoof) && execution_.zero_is_moved()) zero_said_ = false;
     if (r.rot) {
       execution_.turn_frame(r.rot_deg);
@@ -696,6 +702,12 @@ class Siemens {
       return here(r.column,
                   "axis word behind TRAORI or TRAFOOF, which may drop the frames (machine data 10602): TRANS must be "
                   "said again, or ROT");
+    if (execution_.tcp() && !r.supa && !(frame_said_ && axes_said_))
+      return here(
+          r.column,
+          fmt::format("axis word behind TRAORI without {} since: how the tool turns inside a block would depend "
+                      "on the last program",
+                      frame_said_ ? "ORIAXES" : "ORIWKS"));
     if (motion_ < 0) return here(r.column, "axis word before G0 or G1");
     if (r.supa && motion_ != 0) return here(r.column, "SUPA with G1");
     if (motion_ == 1 && !corners_said_)
@@ -723,8 +735,9 @@ class Siemens {
   int motion_ = -1, tool_ = -1;
   tool_check::Unsaid unsaid_;
   bool ended_ = false;
-  bool zero_said_ = true;     // since TRAORI or TRAFOOF, where it was moved
-  bool corners_said_ = true;  // since CYCLE832() was left
+  bool zero_said_ = true;                        // since TRAORI or TRAFOOF, where it was moved
+  bool corners_said_ = true;                     // since CYCLE832() was left
+  bool frame_said_ = false, axes_said_ = false;  // ORIWKS, ORIAXES, since TRAORI
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
 // What is known of every control, from one place: the registry.
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "postproc/controls/registry.h"
 #include "tests/machines/bad_machine_files.h"
 #include "tests/machines/bad_post_keys.h"
+#include "tests/postproc/readback/nc_case.h"
 #include "tests/postproc/text/post_forms.h"
 #include "tests/support/files.h"
 
@@ -100,6 +102,65 @@ TEST(Controls, SayWhatTheWorkOffsetMustHold) {
   }
   EXPECT_EQ(text::offset_trust(controls::find("linuxcnc")->words, "G55", {'X', 'Y', 'Z', 'B', 0}),
             "B, R of G55 must be 0: the program looks and ends if they are not");
+}
+
+// Which pin must know the tool, and which versions err: by the kinematics that the chain of the machine has.
+TEST(Controls, LinuxcncSaysWhatItsTcpMustKnow) {
+  const auto notes = [](machines::Machine m) {
+    m.tcp = machines::TcpMode::angles;
+    m.post.tcp_on = {"M428"};
+    m.post.tcp_off = {"M429"};
+    const auto d = controls::dialect_of(m);
+    return d ? fmt::format("{}", fmt::join(d->tcp_notes, "; ")) : d.error().message;
+  };
+  machines::Machine m = test::trunnion();
+  EXPECT_EQ(notes(m), "TCP: motion.tooloffset.z must reach xyzac-trt-kins.tool-offset");
+  m.chain.table[1].letter = 'B';
+  m.chain.table[1].direction = Vec3::UnitY();
+  EXPECT_EQ(notes(m),
+            "TCP: motion.tooloffset.z must reach xyzbc-trt-kins.tool-offset; xyzbc-trt-kins: none of master from "
+            "2025-06-26 to 2026-09-15, it errs");
+  m.chain.head = {m.chain.table[1]};
+  m.chain.table.pop_back();
+  EXPECT_EQ(notes(m), "TCP: motion.tooloffset.z must reach the kinematics");
+  m.chain.head.insert(m.chain.head.begin(), m.chain.table[0]);
+  m.chain.table.clear();
+  EXPECT_EQ(notes(m), "TCP: 5axiskins.pivot-length is the pivot and motion.tooloffset.z");
+}
+
+// A rotary that is not at its zero at 0 deg: with TCP the control calculates with its own data. One that counts from 0
+// alone is refused, of the others the data are named; without TCP the words are the machine's.
+TEST(Controls, ZerosUnderTcpAreTheControls) {
+  const std::tuple<const char*, machines::TcpMode, const char*, const char*> cases[] = {
+      {"linuxcnc", machines::TcpMode::angles,
+       "axes.A.zero = 90 deg: with TCP dialect \"linuxcnc\" takes the table as level and straight at A = 0; home A so "
+       "that it is, with zero = 0, or take tcp = \"none\"",
+       ""},
+      {"fanuc", machines::TcpMode::angles,
+       "axes.A.zero = 90 deg: with TCP dialect \"fanuc\" takes the table as level and straight at A = 0; home A so "
+       "that "
+       "it is, with zero = 0, or take tcp = \"none\"",
+       ""},
+      {"siemens", machines::TcpMode::angles, "",
+       "axes.A.zero = 90 deg, TRAORI counts A from it, machine data 24510 (24610, ..) TRAFO5_ROT_AX_OFFSET"},
+      {"siemens", machines::TcpMode::vectors, "",
+       "axes.A.zero = 90 deg, TRAORI counts A from it, machine data 24510 (24610, ..) TRAFO5_ROT_AX_OFFSET"},
+      {"heidenhain", machines::TcpMode::angles, "",
+       "axes.A.zero = 90 deg, TCPM counts A from it, in the kinematics of the control"},
+      {"apt", machines::TcpMode::vectors, "", ""},
+      {"linuxcnc", machines::TcpMode::none, "", ""},
+      {"fanuc", machines::TcpMode::none, "", ""}};
+  for (const auto& [dialect, tcp, refused, trusted] : cases)
+    for (const double zero : {90.0, 0.0}) {
+      machines::Machine m = test::with_dialect(test::trunnion(), dialect);
+      m.tcp = tcp;
+      if (m.dialect == "linuxcnc") m.post.tcp_on = m.post.tcp_off = {"M428"};
+      m.chain.table[1].zero_rad = radians(zero);
+      std::string complaints;
+      for (const auto& e : controls::judge(m)) complaints += e.message;
+      EXPECT_EQ(complaints, zero == 0 ? "" : refused) << dialect;
+      EXPECT_EQ(fmt::format("{}", fmt::join(controls::trusted_zeros(m, false), "; ")), zero == 0 ? "" : trusted);
+    }
 }
 
 TEST(ControlKeys, AreJudgedWithTheirPlace) {

@@ -136,9 +136,11 @@ TEST_F(DangerModes, HeaderSaysWhatTheNumbersMean) {
         EXPECT_TRUE(std::regex_search(head, std::regex(R"(WORK OFFSET G54 AT X\+?3\.? Y-2\.? Z\+?0\.? MM MACHINE)")))
             << head;
       }
-      if (std::string(post().dialect) == "fanuc" && post().tcp == machines::TcpMode::angles) {
-        EXPECT_NE(head.find("19696#5 WKP=0"), std::string::npos);
-      }
+      if (post().tcp == machines::TcpMode::none) return;
+      for (const auto& [dialect, said] : {std::pair{"fanuc", "19696#5 WKP=0"},
+                                          {"linuxcnc", "MOTION.TOOLOFFSET.Z MUST REACH XYZAC-TRT-KINS.TOOL-OFFSET"},
+                                          {"siemens", "MACHINE DATA 21104 ORI_IPO_WITH_G_CODE = 1"}})
+        if (post().dialect == std::string(dialect)) { EXPECT_NE(head.find(said), std::string::npos) << head; }
     });
   });
 }

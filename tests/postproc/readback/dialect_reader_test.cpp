@@ -44,7 +44,7 @@ TEST(SiemensReader, RefusalsNameLineAndColumn) {
       {"FOR R1=0 TO 100000\nR2=R1\nENDFOR\n", "more than 10000 executed blocks"},
       {"G641\n", "G641 and ADIS belong together"},
       {"G0 X1 A3=1\n", "A3, B3 and C3 belong together"},
-      {"G0 X1 Y1 A0 C0\nG0 Z300\nTRAORI\nG54\nG0 A3=1 B3=1 C3=1\n", "a tool vector of length 1.73"},
+      {"G0 X1 Y1 A0 C0\nG0 Z300\nTRAORI\nG54\nORIWKS\nORIAXES\nG0 A3=1 B3=1 C3=1\n", "a tool vector of length 1.73"},
       {"G0 X1 Y1 A0 C0\nG0 Z300\nTRAORI\nSUPA G0 Z500\n", "machine coordinates with TCP on"},
       {"G0 X1 Y1 A0 C0\nG0 Z300\nROT Z=30\nG0 X3\n", "a turned frame without TCP"},
       {"G1 X1\n", "G1 from a position that the program did not set"},

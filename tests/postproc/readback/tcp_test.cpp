@@ -246,6 +246,21 @@ TEST(TcpReader, Refusals) {
   EXPECT_NE(
       refusal("linuxcnc", "G0 C0 A0\nG0 X0 Y0\nG0 Z300\nM428\nG53 G0 Z500\n").find("machine coordinates with TCP on"),
       std::string::npos);
+  // What says how Siemens turns the tool between the ends of a block: not left to the last program.
+  const std::string text = nc_text({sample_path(0.3, 0.6)}, tcp_machine("siemens"), standing(), 9)->text;
+  const auto siemens = controls::control_of(tcp_machine("siemens"), standing(), tools());
+  for (const char* word : {"none", "ORIWKS", "ORIAXES"})
+    for (std::size_t at = text.find("\nTRAORI\n"); at != std::string::npos; at = text.find("\nTRAORI\n", at + 1)) {
+      std::string edited = text;
+      if (const auto line = text.find(std::string("\n") + word + "\n", at); line != std::string::npos)
+        edited.erase(line, std::string(word).size() + 1);
+      const auto r = readback::execute_nc(edited, "p", *siemens, [](const readback::ExecutedMove&) {});
+      EXPECT_EQ(bool(r), edited == text) << word;
+      if (edited != text) {
+        EXPECT_NE(r.error().text().find(std::string("behind TRAORI without ") + word), std::string::npos)
+            << r.error().text();
+      }
+    }
   EXPECT_NE(refusal("linuxcnc", "M430\n").find("M430 is not in the subset"), std::string::npos);
   machines::Machine without = trunnion();
   without.post.tcp_on = {"M428"};
