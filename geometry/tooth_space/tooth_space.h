@@ -1,0 +1,127 @@
+// The tooth space of any gear, as planners and proofs ask for it: five smooth pieces from tooth 0 through the root to
+// tooth 1, in a chart of the meridian plane in which the teeth stand upright.
+//
+// A gear type comes in by one kernel (kernel_space.h) or, where it has closed forms, by its own class.
+#pragma once
+
+#include <optional>
+
+#include "geometry/base/vec.h"
+#include "geometry/tooth_space/enclosure.h"
+#include "geometry/tooth_space/piece.h"
+
+namespace toothpath::tooth_space {
+
+/// The meridian plane (r, z) turned so that teeth stand upright: s runs along the teeth, h out of the body. Face gear:
+/// (r, z); cylindrical gear: (-z, r); bevel gear: turned by 90 deg less the pitch angle.
+struct Chart {
+  double cosine = 1, sine = 0;
+  [[nodiscard]] double along(const Vec3& p) const { return cosine * radius(p) - sine * p.z(); }
+  [[nodiscard]] double up(const Vec3& p) const { return sine * radius(p) + cosine * p.z(); }
+  /// Derivatives of both while p moves by d.
+  [[nodiscard]] double along(const Vec3& p, const Vec3& d) const { return cosine * outwards(p, d) - sine * d.z(); }
+  [[nodiscard]] double up(const Vec3& p, const Vec3& d) const { return sine * outwards(p, d) + cosine * d.z(); }
+  /// Radius and height of a place.
+  [[nodiscard]] double r(double s, double h) const { return cosine * s + sine * h; }
+  [[nodiscard]] double z(double s, double h) const { return cosine * h - sine * s; }
+
+ private:
+  static double outwards(const Vec3& p, const Vec3& d) { return (p.x() * d.x() + p.y() * d.y()) / radius(p); }
+};
+
+/// A point of a piece with derivatives. Gear frame, mm; n is the unit normal out of the material.
+struct PatchPoint {
+  Vec3 p = Vec3::Zero(), n = Vec3::Zero();
+  Vec3 pu = Vec3::Zero(), pv = Vec3::Zero();  ///< dp/du, dp/dv
+  Vec3 nu = Vec3::Zero(), nv = Vec3::Zero();  ///< dn/du, dn/dv
+};
+
+/// Nearest point of a piece (continued beyond its borders) to some point c:  c = p + distance n.
+struct PatchFoot {
+  double u = 0, v = 0, distance = 0;
+  PatchPoint at;
+};
+
+/// Where a flank leaves the tooth through the tip surface.
+struct EdgePlace {
+  double u = 0, v = 0;
+  double azimuth = 0;  ///< of the flank's own tooth, unwrapped, rad
+};
+
+/// u where a piece begins and ends on the way from the plus to the minus flank. On its tip's side a flank goes on
+/// without end (+ or - infinity): there the tip edge cuts it off.
+struct Borders {
+  double from = 0, to = 0;
+  [[nodiscard]] bool hold(double u, double slack) const {
+    return from <= to ? u >= from - slack && u <= to + slack : u >= to - slack && u <= from + slack;
+  }
+};
+
+/// One ring of teeth, by numbers.
+struct Outline {
+  Chart chart;
+  double pitch = 0;                           ///< rad
+  double s_from = 0, s_to = 0;                ///< ends of the ring
+  const char *from = "inner", *to = "outer";  ///< and their names
+  double join = 1e-9;  ///< a foot this far beyond the border of its piece (in u) still counts: how well pieces join
+};
+
+/// A solved place next to the one that is asked for.
+struct Near {
+  double v = 0, s = 0;
+};
+
+/// One ring, space 0. Made once, then asked from several threads.
+class ToothSpace {
+ public:
+  virtual ~ToothSpace() = default;
+
+  [[nodiscard]] virtual const Outline& outline() const = 0;
+  /// h of the tip surface, and its first and second derivatives over a stretch, enclosed.
+  [[nodiscard]] virtual double tip(double s) const = 0;
+  [[nodiscard]] virtual CurveBend tip_bend(double s_from, double s_to) const = 0;
+  [[nodiscard]] virtual Borders borders(Piece piece) const = 0;
+  /// The part of a flank that a mate touches: from the tip to where that ends.
+  [[nodiscard]] virtual Borders active(Piece flank) const = 0;
+
+  /// Place and normal, exact, with exact first derivatives of both; nothing where the piece has no place.
+  [[nodiscard]] virtual std::optional<PatchPoint> at(Piece piece, double u, double v) const = 0;
+  /// Place and normal alone; the derivatives may be unset.
+  [[nodiscard]] virtual std::optional<PatchPoint> point(Piece piece, double u, double v) const {
+    return at(piece, u, v);
+  }
+  /// The local nearest place, from (u, v); nothing where it is not found. It may lie beyond the borders of the piece.
+  [[nodiscard]] virtual std::optional<PatchFoot> foot(Piece piece, const Vec3& c, double u, double v) const = 0;
+  /// Where the flank of `side` of tooth 0 meets the tip surface at s; `near`: a place of the same edge.
+  [[nodiscard]] virtual std::optional<EdgePlace> tip_edge(int side, double s,
+                                                          const std::optional<EdgePlace>& near = {}) const = 0;
+  /// The same of the flank without what modifications and corrections take off: from there sheets are woven.
+  [[nodiscard]] virtual std::optional<EdgePlace> plain_tip_edge(int side, double s,
+                                                                const std::optional<EdgePlace>& near = {}) const {
+    return tip_edge(side, s, near);
+  }
+
+  /// Where Newton begins for the place at (u, s) of the parallel surface at `distance`: the first start that arrives
+  /// counts. Nothing: this attempt has no start.
+  static constexpr int kStarts = 3;
+  [[nodiscard]] virtual std::optional<double> start_v(Piece piece, double u, double s, double distance,
+                                                      const std::optional<Near>& near, int attempt) const = 0;
+  /// The most by which v goes in one step of that Newton.
+  [[nodiscard]] virtual double longest_step(Piece piece, double s) const = 0;
+
+  /// Place, first and second derivatives over the box |a| <= half_a, |b| <= half_b of a frame; nothing where no
+  /// enclosure is known: then proofs sample, and count that as unproven.
+  [[nodiscard]] virtual std::optional<Jet> enclosure(Piece piece, const PatchFrame& frame, double half_a,
+                                                     double half_b) const = 0;
+  /// First and second derivatives by s of the azimuth of the tip edge of `side` between two of its places, enclosed:
+  /// the edge cannot leave a box about them in which its slope is bounded. Nothing where no such box is found.
+  [[nodiscard]] virtual std::optional<CurveBend> tip_azimuth(int side, const EdgePlace& from, double s_from,
+                                                             const EdgePlace& to, double s_to) const;
+
+ protected:
+  ToothSpace() = default;
+  ToothSpace(const ToothSpace&) = default;
+  ToothSpace& operator=(const ToothSpace&) = default;
+};
+
+}  // namespace toothpath::tooth_space
