@@ -1,0 +1,255 @@
+#include "geometry/cylindrical/gear.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/base/angle.h"
+#include "geometry/tooth_space/curvature.h"
+
+namespace toothpath::cylindrical {
+namespace {
+
+using tooth_space::Piece;
+
+constexpr int kLeastTeeth = 5, kMostTeeth = 2000;
+constexpr double kSameRadius = 1e-9;      // of the reference radius, between two zones
+constexpr double kGrooveBelowRoot = 0.5;  // modules
+
+/// Gathers what is wrong with a gear.
+class Inspection {
+ public:
+  explicit Inspection(const CylindricalParameters& gear) : gear_(gear) {}
+
+  std::vector<Refusal> refusals;
+
+  void numbers() {
+    if (gear_.teeth < kLeastTeeth || gear_.teeth > kMostTeeth)
+      refuse("teeth", "teeth = {} is outside [{}, {}]", gear_.teeth, kLeastTeeth, kMostTeeth);
+    range("module", gear_.module_mm, 0.05, 100, " mm");
+    range("pressure_angle", degrees(gear_.pressure_angle_rad), 5, 45, " deg");
+    range("profile_shift", gear_.profile_shift, -5, 5, "");
+    range("addendum_coefficient", gear_.addendum_coefficient, 0.1, 3, "");
+    range("dedendum_coefficient", gear_.dedendum_coefficient, 0.1, 3, "");
+    range("root_radius_coefficient", gear_.root_radius_coefficient, 0, 1, "");
+    range("thickness_allowance", gear_.thickness_allowance_mm, -gear_.module_mm, 0, " mm");
+    range("least_land", gear_.least_land, 0, 2, "");
+    if (gear_.tip_diameter_mm && !(*gear_.tip_diameter_mm > 0 && *gear_.tip_diameter_mm < 1e5))
+      refuse("tip_diameter", "tip_diameter = {:.6g} mm is outside (0, 100000) mm", *gear_.tip_diameter_mm);
+    if (!(gear_.bore_diameter_mm >= 0))
+      refuse("bore_diameter", "bore_diameter = {:.6g} mm is below 0", gear_.bore_diameter_mm);
+  }
+
+  void zone_numbers() {
+    const auto& zones = gear_.zones;
+    if (zones.empty()) refuse("zone", "the gear has no zone: at least 1 is needed");
+    if (zones.size() > 2) refuse("zone", "{} zones exceed the limit 2", zones.size());
+    for (std::size_t k = 0; k < zones.size(); ++k) {
+      const auto& z = zones[k];
+      const double beta = degrees(z.helix_angle_rad);
+      if (!(std::abs(beta) <= 60))
+        refuse(key(k, "helix_angle"), "helix_angle = {:.6g} deg is outside [-60, 60] deg", beta);
+      if (!(std::abs(z.from_mm) < 1e5))
+        refuse(key(k, "from"), "from = {:.6g} mm is outside (-100000, 100000) mm", z.from_mm);
+      if (!(z.to_mm > z.from_mm && z.to_mm < 1e5))
+        refuse(key(k, "to"), "to = {:.6g} mm is not above from = {:.6g} mm", z.to_mm, z.from_mm);
+      if (k == 0) continue;
+      if (!(z.from_mm > zones[k - 1].to_mm))
+        refuse(key(k, "from"),
+               "from = {:.6g} mm is not above the end of zone {} at {:.6g} mm: zones rise in z, with a groove between",
+               z.from_mm, k - 1, zones[k - 1].to_mm);
+    }
+  }
+
+  /// Limits of the profile; the same for zones of one helix angle.
+  void profile(std::size_t k, const InvoluteKernel<double>& w) {
+    const auto& zone = gear_.zones[k];
+    if (k > 0 && std::abs(w.r - InvoluteKernel<double>(gear_, gear_.zones[0]).r) > kSameRadius * w.r) {
+      refuse(key(k, "helix_angle"),
+             "helix_angle = {:.6g} deg gives a reference diameter of {:.4f} mm, zone 0 with {:.6g} deg one of {:.4f} "
+             "mm; they must be equal: use equal or opposite helix angles",
+             degrees(zone.helix_angle_rad), 2 * w.r, degrees(gear_.zones[0].helix_angle_rad),
+             2 * InvoluteKernel<double>(gear_, gear_.zones[0]).r);
+      return;
+    }
+    if (!(w.r_f > 0)) {
+      refuse("dedendum_coefficient", "dedendum_coefficient = {:.4f}: the root diameter is {:.4f} mm, limit 0",
+             gear_.dedendum_coefficient, 2 * w.r_f);
+      return;
+    }
+    if (!(w.w_t > 0)) {
+      refuse(
+          "dedendum_coefficient",
+          "dedendum_coefficient = {:.4f}: the tip of the basic rack is {:.4f} mm wide, limit 0; {:.4f} or less would "
+          "do",
+          gear_.dedendum_coefficient, 2 * w.w_t,
+          std::floor(1e4 * (gear_.dedendum_coefficient + w.w_t / (w.m * std::tan(w.alpha_n)))) / 1e4);
+      return;
+    }
+    if (w.v_c < 0)
+      refuse("root_radius_coefficient",
+             "root_radius_coefficient = {:.4f} exceeds {:.4f} (full-radius tip of this rack); use {:.4f} or less",
+             gear_.root_radius_coefficient, largest_root_radius_coefficient(gear_, zone),
+             std::floor(1e4 * largest_root_radius_coefficient(gear_, zone)) / 1e4);
+    if (w.theta_f < 0) {
+      refuse("profile_shift",
+             "profile_shift = {:.4f} is below {:.4f}: the rack undercuts the involute of {} teeth; use {:.4f} or more",
+             gear_.profile_shift, least_profile_shift(gear_, zone), gear_.teeth,
+             std::ceil(1e4 * least_profile_shift(gear_, zone)) / 1e4);
+      return;
+    }
+    tip(w);
+  }
+
+  void bodies(const InvoluteKernel<double>& w, double groove) {
+    if (gear_.bore_diameter_mm > 0 && !(gear_.bore_diameter_mm < std::min(2 * w.r_f, groove)))
+      refuse("bore_diameter", "bore_diameter = {:.4f} mm is not below {:.4f} mm, the {} diameter",
+             gear_.bore_diameter_mm, std::min(2 * w.r_f, groove), groove < 2 * w.r_f ? "groove" : "root");
+    if (!gear_.groove_diameter_mm) return;
+    if (gear_.zones.size() < 2)
+      refuse("groove_diameter", "groove_diameter = {:.4f} mm, but the gear has one zone: a groove lies between two",
+             *gear_.groove_diameter_mm);
+    else if (!(groove > 0 && groove <= 2 * w.r_f))
+      refuse("groove_diameter", "groove_diameter = {:.4f} mm is outside (0, {:.4f}] mm, the root diameter", groove,
+             2 * w.r_f);
+  }
+
+ private:
+  void tip(const InvoluteKernel<double>& w) {
+    const double form = w.r_b * std::sqrt(1 + w.theta_f * w.theta_f);
+    const char* name = gear_.tip_diameter_mm ? "tip_diameter" : "addendum_coefficient";
+    if (!(w.r_a > form)) {
+      refuse(name, "the tip diameter {:.4f} mm is not above {:.4f} mm, where the involute begins", 2 * w.r_a, 2 * form);
+      return;
+    }
+    const double land = 2 * w.r_a * (kPi / gear_.teeth - w.eta(w.theta_a)), least = gear_.least_land * gear_.module_mm;
+    if (land >= least) return;
+    const auto most = tip_diameter_of_land(w, least);
+    refuse(name, "the tip diameter {:.4f} mm leaves a top land of {:.4f} mm, the least is {:.4f} mm ({:g} modules); {}",
+           2 * w.r_a, land, least, gear_.least_land,
+           most ? fmt::format("a tip_diameter of {:.4f} mm or less would do", std::floor(1e4 * *most) / 1e4)
+                : std::string("no tip diameter would do: less profile_shift is needed"));
+  }
+
+  static std::string key(std::size_t zone, const char* name) { return fmt::format("zone[{}].{}", zone, name); }
+  template <typename... Args>
+  void refuse(std::string name, fmt::format_string<Args...> text, Args&&... args) {
+    Refusal refusal{std::move(name), fail(text, std::forward<Args>(args)...)};
+    const bool said = std::any_of(refusals.begin(), refusals.end(), [&](const Refusal& r) {
+      return r.key == refusal.key && r.diagnostic.message == refusal.diagnostic.message;
+    });
+    if (!said) refusals.push_back(std::move(refusal));
+  }
+  void range(const char* name, double value, double low, double high, const char* unit) {
+    if (!(value >= low && value <= high))
+      refuse(name, "{} = {:.6g}{} is outside [{:g}, {:g}]{}", name, value, unit, low, high, unit);
+  }
+
+  const CylindricalParameters& gear_;
+};
+
+/// Least distance from a place to the flank and fillet of the minus side, less `radius`.
+double room(const InvoluteSpace& space, const Vec3& centre, double radius) {
+  constexpr int kStarts = 9;
+  double least = INFINITY;
+  for (const Piece piece : {Piece::fillet_minus, Piece::flank_minus}) {
+    tooth_space::Borders b = space.borders(piece);
+    if (is_flank(piece)) b.to = space.kernel().theta_a;
+    for (int k = 0; k < kStarts; ++k) {
+      const auto foot = space.foot(piece, centre, b.from + (b.to - b.from) * k / (kStarts - 1), centre.z());
+      if (foot && b.hold(foot->u, 1e-9)) least = std::min(least, foot->distance - radius);
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+double least_profile_shift(const CylindricalParameters& gear, const CylindricalZone& zone) {
+  const InvoluteKernel<double> w(gear, zone);
+  const double s = std::sin(w.alpha_t);
+  return gear.dedendum_coefficient - gear.root_radius_coefficient * (1 - std::sin(w.alpha_n)) -
+         gear.teeth * w.m_t * s * s / (2 * w.m);
+}
+
+double largest_root_radius_coefficient(const CylindricalParameters& gear, const CylindricalZone& zone) {
+  const InvoluteKernel<double> w(gear, zone);
+  return w.w_t * std::cos(w.alpha_n) / (1 - std::sin(w.alpha_n)) / w.m;
+}
+
+std::optional<double> tip_diameter_of_land(const InvoluteKernel<double>& w, double land_mm) {
+  const auto land = [&](double theta) {
+    return 2 * w.r_b * std::sqrt(1 + theta * theta) * (kPi / w.teeth - w.eta(theta)) - land_mm;
+  };
+  // The land shrinks outwards, but for its arc near the base cylinder.
+  double low = w.theta_f, high = w.theta_a;
+  if (!(land(low) > 0)) return {};
+  while (land(high) > 0) high *= 2;
+  for (int k = 0; k < 100; ++k) {
+    const double middle = 0.5 * (low + high);
+    (land(middle) > 0 ? low : high) = middle;
+  }
+  return 2 * w.r_b * std::sqrt(1 + low * low);
+}
+
+Expected<CylindricalGear, std::vector<Refusal>> CylindricalGear::make(const CylindricalParameters& parameters) {
+  Inspection inspection(parameters);
+  inspection.numbers();
+  inspection.zone_numbers();
+  if (!inspection.refusals.empty()) return std::move(inspection.refusals);
+  CylindricalGear gear;
+  gear.parameters_ = parameters;
+  for (std::size_t k = 0; k < parameters.zones.size(); ++k) {
+    const InvoluteKernel<double> kernel(parameters, parameters.zones[k]);
+    inspection.profile(k, kernel);
+    gear.spaces_.push_back(std::make_shared<const InvoluteSpace>(kernel));
+  }
+  const auto& w = gear.space(0).kernel();
+  const double groove = parameters.groove_diameter_mm.value_or(
+      parameters.zones.size() > 1 ? 2 * w.r_f - kGrooveBelowRoot * parameters.module_mm : 2 * w.r_f);
+  if (inspection.refusals.empty()) inspection.bodies(w, groove);
+  if (!inspection.refusals.empty()) return std::move(inspection.refusals);
+  if (parameters.zones.size() > 1) gear.groove_diameter_mm_ = groove;
+  return gear;
+}
+
+CylindricalLimits limits_of(const InvoluteSpace& space) {
+  constexpr int kPlaces = 65, kHalvings = 60, kDoublings = 10;
+  const auto& w = space.kernel();
+  const double z = 0.5 * (w.z_from + w.z_to);
+  CylindricalLimits out;
+  out.form_diameter_mm = 2 * w.r_b * std::sqrt(1 + w.theta_f * w.theta_f);
+  out.top_land_mm = 2 * w.r_a * (kPi / w.teeth - w.eta(w.theta_a));
+  // The curvature of the fillet grows towards the root or has one top on the way: the best of a grid, closed in on.
+  const auto hollow = [&](double u) {
+    const auto q = space.at(Piece::fillet_minus, u, z);
+    return q ? -tooth_space::principal_curvatures(*q).least : 0.0;
+  };
+  const tooth_space::Borders b = space.borders(Piece::fillet_minus);
+  const auto place = [&](int k) { return b.from + (b.to - b.from) * std::clamp(k, 0, kPlaces - 1) / (kPlaces - 1); };
+  int best = 0;
+  for (int k = 1; k < kPlaces; ++k)
+    if (hollow(place(k)) > hollow(place(best))) best = k;
+  double low = place(best - 1), high = place(best + 1);
+  for (int k = 0; k < kHalvings; ++k) {
+    const double a = low + (high - low) / 3, c = high - (high - low) / 3;
+    (hollow(a) < hollow(c) ? low : high) = hollow(a) < hollow(c) ? a : c;
+  }
+  out.fillet_radius_min_mm = 1 / std::max(hollow(0.5 * (low + high)), hollow(place(best)));
+  // The ball stands on the middle of the root.
+  const Vec3 outwards = turned(Vec3::UnitX(), w.kappa * z);
+  const auto fits = [&](double R) { return room(space, (w.r_f + R) * outwards + z * Vec3::UnitZ(), R) >= 0; };
+  double fit = 0, stuck = w.r_a - w.r_f;
+  for (int k = 0; k < kDoublings && fits(stuck); ++k) stuck *= 2;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (fit + stuck);
+    (fits(middle) ? fit : stuck) = middle;
+  }
+  out.root_ball_radius_mm = fit;
+  const double half_way = w.theta_at(0.5 * (0.5 * out.form_diameter_mm + w.r_a));
+  out.mid_flank_radius_mm = w.r_b * half_way / w.cos_bb;
+  return out;
+}
+
+}  // namespace toothpath::cylindrical
