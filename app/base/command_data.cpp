@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/report/svg/html_text.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::app {
 namespace {
@@ -33,9 +34,9 @@ void add_data(CommandOutcome& outcome, const char* key, const std::string& json)
   if (outcome.report_json.empty()) return;
   Json report = Json::parse(outcome.report_json);
   report[key] = Json::parse(json);
-  outcome.report_json = report.dump(2) + "\n";
+  outcome.report_json = json_text(report, 2) + "\n";
 }
 
-std::string json_of_toml(const toml::TomlValue& value) { return json_value(value).dump(2); }
+std::string json_of_toml(const toml::TomlValue& value) { return json_text(json_value(value), 2); }
 
 }  // namespace toothpath::app

@@ -16,6 +16,7 @@
 #include "app/report/svg/contact_pattern.h"
 #include "app/report/svg/html_text.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::commands {
 namespace {
@@ -311,7 +312,7 @@ CommandOutcome run_compare(const CompareRequest& request) {
   page.tables = {time_table(shaped, milled), deviation_table(flanks), contact.value().table};
 
   CommandOutcome outcome;
-  outcome.report_json = json.dump(2) + "\n";
+  outcome.report_json = json_text(json, 2) + "\n";
   outcome.summary = page.title + "\n";
   for (const auto& table : page.tables) outcome.summary += "\n" + page::table_text(table);
   outcome.summary += "\nfiles in " + request.out_dir + "\n";

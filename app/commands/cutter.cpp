@@ -10,6 +10,7 @@
 #include "cam/finger/milling.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/json_text.h"
 #include "geometry/bevel_gear/forces.h"
 #include "geometry/bevel_gear/limits.h"
 #include "geometry/bevel_gear/modified_walls.h"
@@ -244,7 +245,7 @@ CommandOutcome run_cutter(const CutterRequest& request) {
   json["warnings"] = sheet.warnings;
 
   CommandOutcome outcome;
-  outcome.report_json = json.dump(2) + "\n";
+  outcome.report_json = json_text(json, 2) + "\n";
   std::optional<bevel_gear::FingerProfile<double>> compared;
   if (!sheet.others.empty()) compared = sheet.others.front().judgement.profile;
   const std::string svg = sheet::cutter_svg(

@@ -7,6 +7,7 @@
 #include "app/process/opening_and_end.h"
 #include "app/report/page/study_page.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/json_text.h"
 #include "geometry/bevel_gear/forces.h"
 
 namespace toothpath::commands {
@@ -220,7 +221,7 @@ std::string json_of(const Pair& pair, const std::string& job_file, const std::ve
                              {"F_a_spiral_N", r.force.axial_spiral},
                              {"F_r_pressure_N", r.force.radial_pressure},
                              {"F_r_spiral_N", r.force.radial_spiral}});
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "app/report/sheet/dry_run_sheet.h"
 #include "app/report/sheet/machine_sheet.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/json_text.h"
 #include "machines/machine_file.h"
 #include "machines/machine_table.h"
 #include "postproc/bodies/of_machine.h"
@@ -35,9 +36,10 @@ struct Shown {
 std::string json_of_file(const machines::MachineFileText& file, const nlohmann::ordered_json& bodies = {}) {
   const auto tree = machines::parse_machine_toml(file.text, file.path);
   CommandOutcome outcome;
-  outcome.report_json = nlohmann::ordered_json{{"schema", 1}, {"command", "machine show"}, {"file", file.path}}.dump();
+  outcome.report_json =
+      json_text(nlohmann::ordered_json{{"schema", 1}, {"command", "machine show"}, {"file", file.path}});
   if (tree) app::add_data(outcome, "machine", app::json_of_toml(*tree));
-  if (bodies.is_array()) app::add_data(outcome, "bodies", bodies.dump());
+  if (bodies.is_array()) app::add_data(outcome, "bodies", json_text(bodies));
   return outcome.report_json;
 }
 
@@ -160,7 +162,7 @@ std::string test_json(const machines::Machine& machine, const std::vector<sheet:
                                 {"tip_leaves_um", 1000 * part.proof.worst_mm},
                                 {"moves", part.proof.moves},
                                 {"minutes", part.proof.minutes}});
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 /// A text of places of the tool would show nothing of the machine's axes.

@@ -4,6 +4,7 @@
 #include "app/commands/command.h"
 #include "app/report/page/study_page.h"
 #include "app/report/svg/html_text.h"
+#include "geometry/base/json_text.h"
 #include "machines/machine_file.h"
 #include "postproc/shaper/control.h"
 
@@ -68,7 +69,7 @@ CommandOutcome list_machines(const CommonRequest&) {
   CommandOutcome outcome;
   if (!errors.empty()) outcome = failed(std::move(errors));
   outcome.summary = page::table_text(table);
-  outcome.report_json = json.dump(2) + "\n";
+  outcome.report_json = json_text(json, 2) + "\n";
   return outcome;
 }
 

@@ -9,6 +9,7 @@
 #include "app/base/units.h"
 #include "app/job/measured_points.h"
 #include "app/report/svg/html_text.h"
+#include "geometry/base/json_text.h"
 #include "machines/toml/regular_file.h"
 
 namespace toothpath::job {
@@ -351,7 +352,7 @@ std::string correction_json(const CorrectedGear& corrected) {
                       {"residual_rms_um", app::um(r.residual_rms_mm)},
                       {"target", std::move(offsets)}});
   }
-  return Json{{"schema", 1}, {"measured", std::move(files)}, {"flanks", std::move(flanks)}}.dump(2) + "\n";
+  return json_text(Json{{"schema", 1}, {"measured", std::move(files)}, {"flanks", std::move(flanks)}}, 2) + "\n";
 }
 
 }  // namespace toothpath::job

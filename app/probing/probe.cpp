@@ -13,6 +13,7 @@
 #include "app/probing/touch_file.h"
 #include "app/process/gear_of_job.h"
 #include "app/process/opening_and_end.h"
+#include "geometry/base/json_text.h"
 #include "geometry/inspection/bevel_touches.h"
 #include "geometry/inspection/face_touches.h"
 #include "machines/toml/regular_file.h"
@@ -122,12 +123,12 @@ CommandOutcome write_program(const ProbeRequest& request, const Inputs& in, app:
   if (!request.blank)
     outcome.summary +=
         fmt::format("  least gap           {:.3f} mm of ball and stem to what is not touched\n", in.plan.gap_mm);
-  outcome.report_json = nlohmann::ordered_json{{"schema", 1},
-                                               {"command", "probe"},
-                                               {"program", name},
-                                               {"touches", in.plan.touches.size()},
-                                               {"gap", in.plan.gap_mm}}
-                            .dump(2) +
+  outcome.report_json = json_text(nlohmann::ordered_json{{"schema", 1},
+                                                         {"command", "probe"},
+                                                         {"program", name},
+                                                         {"touches", in.plan.touches.size()},
+                                                         {"gap", in.plan.gap_mm}},
+                                  2) +
                         "\n";
   return process::finished(output, {{name, *text}}, std::move(outcome));
 }
@@ -160,15 +161,16 @@ CommandOutcome solve(const ProbeRequest& request, const Inputs& in, app::OutputD
       results->size(), place->residual_mm * 1000, place->rms_mm * 1000, place->tilt_rad.norm() * rim * 1000, rim,
       kMeasured, kMeasured);
   outcome.report_json =
-      nlohmann::ordered_json{{"schema", 1},
-                             {"command", "probe"},
-                             {"origin", {measured.origin_mm.x(), measured.origin_mm.y(), measured.origin_mm.z()}},
-                             {"moved", {place->moved_mm.x(), place->moved_mm.y(), place->moved_mm.z()}},
-                             {"clocking_deg", degrees(measured.clocking_rad)},
-                             {"lean_um", place->tilt_rad.norm() * rim * 1000},
-                             {"residual_um", place->residual_mm * 1000},
-                             {"rms_um", place->rms_mm * 1000}}
-          .dump(2) +
+      json_text(
+          nlohmann::ordered_json{{"schema", 1},
+                                 {"command", "probe"},
+                                 {"origin", {measured.origin_mm.x(), measured.origin_mm.y(), measured.origin_mm.z()}},
+                                 {"moved", {place->moved_mm.x(), place->moved_mm.y(), place->moved_mm.z()}},
+                                 {"clocking_deg", degrees(measured.clocking_rad)},
+                                 {"lean_um", place->tilt_rad.norm() * rim * 1000},
+                                 {"residual_um", place->residual_mm * 1000},
+                                 {"rms_um", place->rms_mm * 1000}},
+          2) +
       "\n";
   return process::finished(output,
                            {{kMeasured, job::measured_setup_text(measured, results->size(), place->residual_mm)}},

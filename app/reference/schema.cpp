@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "app/reference/formats.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::reference {
 namespace {
@@ -319,7 +320,7 @@ std::string job_schema() {
   const Format format = job_format();
   Json json = head("A job of Toothpath");
   json.update(Schema(format).file());
-  return json.dump(1) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 std::string machine_schema() {
@@ -331,7 +332,7 @@ std::string machine_schema() {
   json["if"] = {{"properties", {{"kind", {{"const", "gear_shaper"}}}}}};
   json["then"] = Schema(shaper).file();
   json["else"] = Schema(milling).file();
-  return json.dump(1) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 }  // namespace toothpath::reference

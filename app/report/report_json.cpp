@@ -5,6 +5,7 @@
 #include "app/report/run_report.h"
 #include "app/report/svg/html_text.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::report {
 namespace {
@@ -527,7 +528,7 @@ std::string report_json(const RunReport& r) {
   Json stages = Json::object();
   for (const auto& [name, seconds] : r.stages) stages[name] = seconds;
   json["stages"] = std::move(stages);
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace toothpath::report

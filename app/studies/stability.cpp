@@ -7,6 +7,7 @@
 #include "app/process/opening_and_end.h"
 #include "app/report/page/study_page.h"
 #include "app/studies/stability_rows.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::studies {
 namespace {
@@ -47,7 +48,7 @@ std::string json_of(const std::vector<StabilityRow>& rows, bool fine) {
                              {"fine", row.fine},
                              {"verdict", row.verdict},
                              {"reason", row.reason}});
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 std::string shortened(std::string text) {

@@ -10,6 +10,7 @@
 #include "app/report/svg/html_text.h"
 #include "app/studies/strategy_trial.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::studies {
 namespace {
@@ -273,14 +274,14 @@ Json json_of(const StrategyTrial& t) {
   return row;
 }
 
-std::string json_text(const job::Job& job, const std::vector<StrategyTrial>& trials) {
+std::string trials_json(const job::Job& job, const std::vector<StrategyTrial>& trials) {
   Json json = {{"schema", 1},
                {"command", "study strategies"},
                {"job", svg::valid_utf8(job.name)},
                {"job_file", svg::valid_utf8(job.file)},
                {"strategies", Json::array()}};
   for (const auto& t : trials) json["strategies"].push_back(json_of(t));
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 }  // namespace
@@ -299,7 +300,7 @@ commands::CommandOutcome study_strategies(const StrategiesRequest& request) {
   const std::vector<StrategyTrial>& trials = made.value();
 
   commands::CommandOutcome outcome;
-  outcome.report_json = json_text(job, trials);
+  outcome.report_json = trials_json(job, trials);
   outcome.summary = screen_text(trials) + "files in " + request.out_dir + "\n";
   const process::NamedFiles files = {{"strategies.html", page::study_page_html(page_of(job, *flanks, trials))},
                                      {"strategies.json", outcome.report_json}};

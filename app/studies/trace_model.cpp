@@ -6,6 +6,7 @@
 #include "app/report/page/study_page.h"
 #include "app/report/svg/field_map.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/json_text.h"
 #include "geometry/bevel_gear/section_models.h"
 
 namespace toothpath::studies {
@@ -62,7 +63,7 @@ std::string json_of(const bevel_gear::BevelGear& g, const std::string& job_file,
                              {"least_at", {m.least_ell, m.least_height}},
                              {"height_range", {m.height.front(), m.height.back()}},
                              {"cone_distance_range", {m.ell.front(), m.ell.back()}}});
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 page::StudyPage page_of(const bevel_gear::BevelGear& g, const job::Job& job,

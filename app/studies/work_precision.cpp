@@ -11,6 +11,7 @@
 #include "app/process/proof_limits.h"
 #include "app/report/page/study_page.h"
 #include "app/report/svg/html_text.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::studies {
 namespace {
@@ -224,7 +225,7 @@ std::string json_of(const job::Job& job, const page::PageTable& table) {
     }
     json["runs"].push_back(std::move(run));
   }
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 /// The report page of the job as it stands, its own gouge tolerance and all, the plots of the study among its sections.

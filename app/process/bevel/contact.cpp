@@ -15,6 +15,7 @@
 #include "app/report/page/study_page.h"
 #include "app/report/svg/contact_pattern.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/json_text.h"
 #include "geometry/contact/bevel_contact.h"
 
 namespace toothpath::bevel {
@@ -257,7 +258,7 @@ std::string json_of(const PairAnalysis& a) {
   json["finding"] = finding(a);
   json["notes"] = a.notes;
   if (a.loaded) json["loaded"] = under_load::loaded_json(*a.loaded);
-  return json.dump(1) + "\n";
+  return json_text(json, 1) + "\n";
 }
 
 /// The gear that the job's gear runs with.

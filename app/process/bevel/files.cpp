@@ -9,6 +9,7 @@
 #include "cam/finger/milling.h"
 #include "cam/finger/obstacles.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/json_text.h"
 #include "geometry/mesh/bevel_mesh.h"
 
 namespace toothpath::bevel {
@@ -99,7 +100,7 @@ std::string limits_json(const bevel_gear::BevelGear& g) {
                               {"outer_cone_distance", g.R_e()},
                               {"inner_cone_distance", g.R_i()},
                               {"trace_end", g.R_0()}};
-  return j.dump(2) + "\n";
+  return json_text(j, 2) + "\n";
 }
 
 Status write_surface_files(app::OutputDir& output, const bevel_gear::BevelGear& gear, const std::string& job_name,

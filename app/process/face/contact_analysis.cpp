@@ -7,6 +7,7 @@
 #include "app/process/face/searched_pair.h"
 #include "app/process/under_load/loaded_page.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/json_text.h"
 #include "geometry/base/work_share.h"
 
 namespace toothpath::face {
@@ -352,7 +353,7 @@ std::string contact_json(const ContactAnalysis& a) {
   ease_off::add_misaligned(json, a.misaligned);
   if (a.loaded) json["loaded"] = under_load::loaded_json(*a.loaded);
   json["notes"] = a.notes;
-  return json.dump(2) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 std::string contact_summary(const ContactAnalysis& a) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/report/limits/chart.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::limits {
 namespace {
@@ -44,7 +45,7 @@ std::string limits_json(const face_gear::FaceGear& gear) {
                      {"practical_land", ring.limits.practical_land_mm},
                      {"flanks", std::move(flanks)}});
   }
-  return Json{{"schema", 1}, {"zones", std::move(zones)}}.dump(2) + "\n";
+  return json_text(Json{{"schema", 1}, {"zones", std::move(zones)}}, 2) + "\n";
 }
 
 }  // namespace toothpath::limits

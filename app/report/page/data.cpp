@@ -7,6 +7,7 @@
 
 #include "app/report/page/packed_json.h"
 #include "app/report/svg/html_text.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::page {
 namespace {
@@ -175,7 +176,7 @@ std::string report_data_json(const ReportPage& page) {
                                 {"text", svg::valid_utf8(fmt::format("{}, {}: {:.2f} \u00b5m, NC line {}", place.body,
                                                                      place.patch, place.depth_mm * 1e3, place.line))}});
   if (page.machine) data["machine"] = machine_scene_json(*page.machine);
-  return svg::script_safe_json(data.dump());
+  return svg::script_safe_json(json_text(data));
 }
 
 }  // namespace toothpath::page

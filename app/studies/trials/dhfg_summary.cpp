@@ -6,6 +6,7 @@
 
 #include "app/report/page/study_page.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::trials {
 namespace {
@@ -296,7 +297,7 @@ DhfgSummary summary_of(const StudyFacts& facts, const StudyFound& found) {
   page.charts = charts_of(facts, trials);
   page.tables = tables;
   DhfgSummary out;
-  out.json = json_of(facts, trials).dump(2) + "\n";
+  out.json = json_text(json_of(facts, trials), 2) + "\n";
   out.text = page.title + "\n";
   for (const auto& table : tables) out.text += "\n" + table.title + "\n" + page::table_text(table) + table.note + "\n";
   for (const auto& paragraph : page.introduction) out.text += "\n" + paragraph + "\n";
