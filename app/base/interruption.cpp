@@ -1,5 +1,6 @@
 #include "app/base/interruption.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <array>
@@ -15,7 +16,8 @@ namespace {
 
 /// What the handler may touch: plain memory, filled before `used` is set.
 struct Slot {
-  std::array<char, 4096> path{};
+  int directory = 0;
+  std::array<char, 4096> name{};
   std::atomic<bool> used = false;
   bool is_directory = false;
 };
@@ -36,9 +38,9 @@ static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_alw
 
 void remove_temporaries() {
   for (const Slot& slot : slots)
-    if (slot.used && !slot.is_directory) ::unlink(slot.path.data());
+    if (slot.used && !slot.is_directory) ::unlinkat(slot.directory, slot.name.data(), 0);
   for (std::size_t i = kSlots; i-- > 0;)  // the innermost directory was registered last
-    if (slots[i].used && slots[i].is_directory) ::rmdir(slots[i].path.data());
+    if (slots[i].used && slots[i].is_directory) ::unlinkat(slots[i].directory, slots[i].name.data(), AT_REMOVEDIR);
 }
 
 void to_stderr(std::string_view text) { (void)!::write(STDERR_FILENO, text.data(), text.size()); }
@@ -58,16 +60,21 @@ void handle_signals() {
   struct sigaction action {};
   action.sa_handler = on_signal;
   ::sigemptyset(&action.sa_mask);
-  for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(number, &action, nullptr);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    if (::sigaction(number, nullptr, &before) == 0 && before.sa_handler == SIG_IGN) continue;  // nohup
+    ::sigaction(number, &action, nullptr);
+  }
   action.sa_handler = SIG_IGN;
   for (const int number : {SIGPIPE, SIGXFSZ}) ::sigaction(number, &action, nullptr);
 }
 
-bool register_temporary(const std::string& path, bool is_directory) {
+bool register_temporary(int directory, const std::string& name, bool is_directory) {
   for (Slot& slot : slots) {
     if (slot.used) continue;
-    if (path.size() >= slot.path.size()) return false;
-    std::memcpy(slot.path.data(), path.c_str(), path.size() + 1);
+    if (name.size() >= slot.name.size()) return false;
+    slot.directory = directory;
+    std::memcpy(slot.name.data(), name.c_str(), name.size() + 1);
     slot.is_directory = is_directory;
     slot.used = true;
     return true;
@@ -75,9 +82,9 @@ bool register_temporary(const std::string& path, bool is_directory) {
   return false;
 }
 
-void forget_temporary(const std::string& path) {
+void forget_temporary(int directory, const std::string& name) {
   for (Slot& slot : slots)
-    if (slot.used && path == slot.path.data()) slot.used = false;
+    if (slot.used && slot.directory == directory && name == slot.name.data()) slot.used = false;
 }
 
 void set_state(const std::string& text) {

@@ -7,15 +7,16 @@
 
 namespace toothpath::app {
 
-/// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files registered below, then the registered directories
-/// that are empty, and end the process with exit code 130. SIGPIPE and SIGXFSZ are ignored: writing returns an error
-/// instead.
+/// From now on SIGINT, SIGTERM and SIGHUP, but those that the caller ignores (nohup), remove the temporary files
+/// registered below, then the registered directories that are empty, and end the process with exit code 130. SIGPIPE
+/// and SIGXFSZ are ignored: writing returns an error instead.
 void handle_signals();
 
-/// A temporary file or a directory made by this run, removed when a signal ends it. At most 64 of each; more are
-/// refused (false), as are paths beyond 4095 bytes.
-[[nodiscard]] bool register_temporary(const std::string& path, bool is_directory);
-void forget_temporary(const std::string& path);
+/// A temporary file or a directory made by this run, removed when a signal ends it: `name` in an open directory, which
+/// stays open until it is forgotten. At most 128; more are refused (false), as are names beyond 4095 bytes.
+/// @param directory  a handle; AT_FDCWD: `name` is a path
+[[nodiscard]] bool register_temporary(int directory, const std::string& name, bool is_directory);
+void forget_temporary(int directory, const std::string& name);
 
 /// What stands in the output directory: a signal leaves "interrupted: " and this on stderr, at most 1000 bytes of it;
 /// empty (as at first): none.

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cerrno>
 #include <charconv>
 #include <filesystem>
@@ -17,12 +18,14 @@
 #include "app/base/out_of_memory.h"
 #include "app/base/standing_results.h"
 #include "geometry/base/hash.h"
-#include "machines/toml/regular_file.h"
+#include "geometry/base/inputs_read.h"
 
 namespace toothpath::app {
 namespace {
 
 namespace fs = std::filesystem;
+using files::cannot;
+using files::Folder;
 
 constexpr std::string_view kTemporaryPrefix = ".toothpath-";
 constexpr const char* kLock = ".toothpath-lock";
@@ -35,29 +38,13 @@ void say(const std::string& interrupted, const std::string& ended) {
   note = ended;
 }
 
-/// Makes the directory and its parents; returns those that were made, outermost first.
-Result<std::vector<std::string>> make_directories(const std::string& path) {
-  std::vector<std::string> missing, made;
-  for (fs::path p = fs::path(path).lexically_normal(); !p.empty(); p = p.parent_path()) {
-    std::error_code error;
-    if (fs::exists(fs::symlink_status(p, error)) || p == p.parent_path()) break;
-    if (p.has_filename()) missing.push_back(p.string());
+/// Directories that this run made go again, as far as nothing is in them.
+void remove_made(std::vector<Folder::Made>& made) {
+  for (auto it = made.rbegin(); it != made.rend(); ++it) {
+    (void)it->parent.remove_folder(it->name);
+    forget_temporary(it->parent.handle(), it->name);
   }
-  for (auto it = missing.rbegin(); it != missing.rend(); ++it) {
-    if (::mkdir(it->c_str(), 0777) == 0) {
-      made.push_back(*it);
-      if (!register_temporary(*it, true)) return cannot("use", *it, ENAMETOOLONG);
-      continue;
-    }
-    if (errno == EEXIST) continue;  // another run made it meanwhile, and will take it away
-    const int error = errno;
-    for (auto old = made.rbegin(); old != made.rend(); ++old) {
-      ::rmdir(old->c_str());
-      forget_temporary(*old);
-    }
-    return cannot("make the directory", *it, error);
-  }
-  return made;
+  made.clear();
 }
 
 /// Process that wrote a temporary file, from its name ".toothpath-<pid>-<name>".
@@ -71,11 +58,10 @@ std::optional<pid_t> writer_of(std::string_view name) {
 }
 
 /// What a run that was killed outright could not take with it.
-void remove_leftovers(const std::string& directory) {
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(directory, error)) {
-    const auto writer = writer_of(entry.path().filename().string());
-    if (writer && ::kill(*writer, 0) != 0 && errno == ESRCH) ::unlink(entry.path().c_str());
+void remove_leftovers(const Folder& folder) {
+  for (const auto& name : folder.names()) {
+    const auto writer = writer_of(name);
+    if (writer && ::kill(*writer, 0) != 0 && errno == ESRCH) (void)folder.remove(name);
   }
 }
 
@@ -94,36 +80,68 @@ Diagnostic refused_input(const std::string& path, std::string why) {
 
 }  // namespace
 
-OutputDir::OutputDir(std::string path, const std::vector<std::string>& own_names, const std::string& previous)
-    : path_(std::move(path)), names_(own_names), previous_(previous), exchange_(path_, names_, previous_) {}
+OutputDir::OutputDir(Folder folder, std::vector<Folder::Made> made, const std::vector<std::string>& own_names,
+                     const std::string& previous)
+    : folder_(std::move(folder)),
+      names_(own_names),
+      previous_(previous),
+      exchange_(folder_, names_, previous_),
+      made_(std::move(made)),
+      active_(true) {}
 
 Result<OutputDir> OutputDir::open(const std::string& path, const std::vector<std::string>& own_names,
                                   const std::vector<std::string>& inputs, const std::string& previous) {
-  OutputDir result(path, own_names, previous);
+  return opened([&](auto& made) { return Folder::open_or_make(path, made); }, own_names, inputs, previous);
+}
+
+Result<OutputDir> OutputDir::open_below(const std::string& path, const std::string& name,
+                                        const std::vector<std::string>& own_names,
+                                        const std::vector<std::string>& inputs) {
+  const auto below = [&](auto& made) {
+    auto folder = Folder::open_or_make(path, made);
+    return folder ? folder->below_or_made(name, made) : folder;
+  };
+  return opened(below, own_names, inputs, {});
+}
+
+Result<OutputDir> OutputDir::opened(const MakeFolder& make, const std::vector<std::string>& own_names,
+                                    const std::vector<std::string>& inputs, const std::string& previous) {
   say("nothing was written", {});
-  auto made = make_directories(path);
-  if (!made) return made.error();
-  result.made_ = std::move(made.value());
-  result.active_ = true;
-  std::error_code error;
-  if (!fs::is_directory(path, error)) return cannot("write into", path, ENOTDIR);
-  if (::access(path.c_str(), W_OK | X_OK) != 0) return cannot("write into", path, errno);
-  if (auto s = result.lock(); !s) return s.error();
-  if (auto s = result.refuse_leftovers(inputs); !s) return s.error();
-  {
-    require_memory();
-    const SignalsBlocked blocked;
-    remove_leftovers(path);
-    if (auto s = result.exchange_.recover(); !s) return s.error();
+  std::vector<Folder::Made> made;
+  bool registered = true;
+  auto folder = [&] {
+    const SignalsBlocked blocked;  // until a signal can take away what was made
+    auto result = make(made);
+    for (const auto& one : made) registered = register_temporary(one.parent.handle(), one.name, true) && registered;
+    return result;
+  }();
+  if (folder && !registered) folder = cannot("use", folder->path(), ENAMETOOLONG);
+  if (!folder) {
+    remove_made(made);
+    return folder.error();
   }
-  if (auto s = result.exchange_.check(); !s) return s.error();
-  result.note_standing();
-  if (auto s = result.refuse_replaced_inputs(inputs); !s) return s.error();
+  OutputDir result(std::move(folder).value(), std::move(made), own_names, previous);
+  if (auto s = result.prepare(inputs); !s) return s.error();
   return result;
 }
 
+Status OutputDir::prepare(const std::vector<std::string>& inputs) {
+  if (!folder_.may_write()) return cannot("write into", path(), errno);
+  if (auto s = lock(); !s) return s;
+  if (auto s = refuse_leftovers(inputs); !s) return s;
+  {
+    require_memory();
+    const SignalsBlocked blocked;
+    remove_leftovers(folder_);
+    if (auto s = exchange_.recover(); !s) return s;
+  }
+  if (auto s = exchange_.check(); !s) return s;
+  note_standing();
+  return refuse_replaced_inputs(inputs);
+}
+
 OutputDir::OutputDir(OutputDir&& other) noexcept
-    : path_(std::move(other.path_)),
+    : folder_(other.folder_),  // a copy: what it registered stands by its handle
       names_(std::move(other.names_)),
       previous_(std::move(other.previous_)),
       exchange_(std::move(other.exchange_)),
@@ -140,47 +158,46 @@ OutputDir::~OutputDir() {
 /// A hidden file, locked as long as this run lives: who dies leaves a file without a lock. The file goes with its run,
 /// so a lock counts only while its file stands there.
 Status OutputDir::lock() {
-  const std::string path = path_ + "/" + kLock;
   for (;;) {
-    lock_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (lock_ < 0) return cannot("write", path, errno);
+    const auto file = folder_.open_file(kLock, O_RDWR | O_CREAT);
+    if (!file) return file.error();
     int locked = 0;
-    do locked = ::flock(lock_, LOCK_EX | LOCK_NB);
+    do locked = ::flock(*file, LOCK_EX | LOCK_NB);
     while (locked != 0 && errno == EINTR);
     const int error = errno;
     struct stat ours {
     }, there{};
-    const bool counts =
-        locked == 0 && ::fstat(lock_, &ours) == 0 && ::lstat(path.c_str(), &there) == 0 && same_file(ours, there);
-    if (counts) break;
-    ::close(std::exchange(lock_, -1));
+    if (locked == 0 && ::fstat(*file, &ours) == 0 && folder_.look(kLock, there) && same_file(ours, there)) {
+      lock_ = *file;
+      break;
+    }
+    ::close(*file);
     if (locked == 0) continue;
     if (error == EWOULDBLOCK) {
       Diagnostic busy = fail_as(DiagnosticKind::file_access,
                                 "another run is writing into this directory: wait for its end, or give another --out");
-      busy.position.file = path_;
+      busy.position.file = path();
       return busy;
     }
-    return cannot("lock", path, error);
+    return cannot("lock", folder_.at(kLock), error);
   }
-  if (register_temporary(path, false)) return Ok{};
+  if (register_temporary(folder_.handle(), kLock, false)) return Ok{};
   unlock();
-  return cannot("write", path, ENAMETOOLONG);
+  return cannot("write", folder_.at(kLock), ENAMETOOLONG);
 }
 
 void OutputDir::unlock() {
   if (lock_ < 0) return;
-  const std::string path = path_ + "/" + kLock;
-  ::unlink(path.c_str());
-  forget_temporary(path);
+  (void)folder_.remove(kLock);
+  forget_temporary(folder_.handle(), kLock);
   ::close(std::exchange(lock_, -1));
 }
 
 Status OutputDir::refuse_replaced_inputs(const std::vector<std::string>& inputs) const {
-  const auto refuse_in = [&](const std::string& directory) -> Status {
-    for (const auto& name : names_.standing_in(directory)) {
+  const auto refuse_in = [&](const Folder& folder) -> Status {
+    for (const auto& name : names_.standing_in(folder)) {
       struct stat replaced {};
-      if (::lstat((directory + "/" + name).c_str(), &replaced) != 0) continue;
+      if (!folder.look(name, replaced)) continue;
       for (const auto& input : inputs)
         if (stands_at(input, replaced))
           return refused_input(
@@ -191,38 +208,40 @@ Status OutputDir::refuse_replaced_inputs(const std::vector<std::string>& inputs)
     }
     return Ok{};
   };
-  if (auto s = refuse_in(path_); !s) return s;
-  return previous_.empty() ? Status(Ok{}) : refuse_in(path_ + "/" + previous_);
+  if (auto s = refuse_in(folder_); !s) return s;
+  if (previous_.empty() || folder_.kind(previous_) != files::Kind::folder) return Ok{};
+  const auto previous = folder_.below(previous_);
+  return previous ? refuse_in(*previous) : Status(Ok{});
 }
 
 /// open() clears hidden files of ours away.
 Status OutputDir::refuse_leftovers(const std::vector<std::string>& inputs) const {
   std::error_code error;
-  const fs::path here = fs::canonical(path_, error);
+  const fs::path here = fs::canonical(path(), error);
   for (const auto& input : inputs)
     for (fs::path at = fs::absolute(input, error); at.has_relative_path(); at = at.parent_path())
       if (at.filename().string().starts_with(kTemporaryPrefix) && fs::canonical(at.parent_path(), error) == here)
         return refused_input(input, fmt::format("names that begin with \"{}\" are the program's own in {}: copy this "
                                                 "input elsewhere",
-                                                kTemporaryPrefix, path_));
+                                                kTemporaryPrefix, path()));
   return Ok{};
 }
 
-Status OutputDir::keeps_inputs() const { return refuse_replaced_inputs(toml::inputs_read()); }
+Status OutputDir::keeps_inputs() const { return refuse_replaced_inputs(inputs_read()); }
 
 void OutputDir::note_standing() const {
-  const std::string standing = describe_results(path_, names_.standing_in(path_));
-  if (standing.empty()) return say(path_ + " holds no results of this command", {});
-  const std::string text = fmt::format("{} stays as it was: {}", path_, standing);
+  const std::string standing = describe_results(folder_, names_.standing_in(folder_));
+  if (standing.empty()) return say(path() + " holds no results of this command", {});
+  const std::string text = fmt::format("{} stays as it was: {}", path(), standing);
   say(text, text);
 }
 
 Status OutputDir::set_aside() {
   if (auto s = keeps_inputs(); !s) return s;
-  const auto standing = names_.standing_in(path_);
+  const auto standing = names_.standing_in(folder_);
   if (standing.empty() || !names_.is_program(standing.front())) return Ok{};
   std::string text =
-      fmt::format("what stood in {} is in {}/{}: {}", path_, path_, previous_, describe_results(path_, standing));
+      fmt::format("what stood in {} is in {}: {}", path(), folder_.at(previous_), describe_results(folder_, standing));
   require_memory();
   const SignalsBlocked blocked;
   if (auto s = exchange_.set_aside(); !s) return s;
@@ -236,38 +255,34 @@ const OutputDir::File* OutputDir::find(std::string_view name) const {
   return found == files_.end() ? nullptr : &*found;
 }
 
-std::string OutputDir::final_path(std::string_view name) const { return path_ + "/" + std::string(name); }
+std::string OutputDir::final_path(std::string_view name) const { return folder_.at(name); }
 
 Status OutputDir::write(std::string_view name, std::string_view content) {
   discard(name);
-  const std::string temporary = fmt::format("{}/{}{}-{}", path_, kTemporaryPrefix, ::getpid(), name);
-  if (!register_temporary(temporary, false)) return cannot("write", final_path(name), ENAMETOOLONG);
-  ::unlink(temporary.c_str());
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (descriptor < 0) {
-    const int error = errno;
-    forget_temporary(temporary);
-    return cannot("write", final_path(name), error);
+  const std::string temporary = fmt::format("{}{}-{}", kTemporaryPrefix, ::getpid(), name);
+  if (!register_temporary(folder_.handle(), temporary, false)) return cannot("write", final_path(name), ENAMETOOLONG);
+  auto written = folder_.remove(temporary);
+  if (written) written = folder_.write_new(temporary, content);
+  if (written) {
+    files_.push_back({std::string(name), temporary, sha256_hex(content)});
+    return Ok{};
   }
-  files_.push_back({std::string(name), temporary, sha256_hex(content)});
-  int error = write_all(descriptor, content);
-  if (::close(descriptor) != 0 && error == 0) error = errno;
-  if (error == 0) return Ok{};
-  discard(name);
-  return cannot("write", final_path(name), error);
+  forget_temporary(folder_.handle(), temporary);
+  written.error().position.file = final_path(name);
+  return written;
 }
 
 Result<std::string> OutputDir::read_back(std::string_view name) const {
   const File* file = find(name);
   if (!file) return cannot("read", final_path(name), ENOENT);
-  return toml::read_regular_file(file->temporary_path, std::string().max_size());
+  return folder_.read(file->temporary, std::string().max_size());
 }
 
 void OutputDir::discard(std::string_view name) {
   const auto found = std::find_if(files_.begin(), files_.end(), [&](const File& f) { return f.name == name; });
   if (found == files_.end()) return;
-  ::unlink(found->temporary_path.c_str());
-  forget_temporary(found->temporary_path);
+  (void)folder_.remove(found->temporary);
+  forget_temporary(folder_.handle(), found->temporary);
   files_.erase(found);
 }
 
@@ -279,11 +294,7 @@ void OutputDir::discard_if(const std::function<bool(std::string_view)>& is_one) 
 void OutputDir::discard_all() {
   while (!files_.empty()) discard(std::string(files_.back().name));
   unlock();
-  for (auto it = made_.rbegin(); it != made_.rend(); ++it) {
-    ::rmdir(it->c_str());  // fails where something is in it, as it should
-    forget_temporary(*it);
-  }
-  made_.clear();
+  remove_made(made_);
   active_ = false;
 }
 
@@ -291,7 +302,7 @@ void OutputDir::discard_all() {
 Status OutputDir::verify() const {
   for (const File& file : files_) {
     Sha256 hash;
-    const Status read = toml::for_each_block(final_path(file.name), [&](std::string_view block) -> Status {
+    const Status read = folder_.for_each_block(file.name, [&](std::string_view block) -> Status {
       hash.add(block);
       return Ok{};
     });
@@ -315,19 +326,22 @@ Status OutputDir::commit() {
   }
   std::stable_partition(files_.begin(), files_.end(), [&](const File& file) { return !names_.is_program(file.name); });
   std::vector<OutputExchange::NewFile> renamed;
-  for (const File& file : files_) renamed.push_back({file.temporary_path, file.name});
+  for (const File& file : files_) {
+    assert(names_.contains(file.name));
+    renamed.push_back({file.temporary, file.name});
+  }
   if (auto s = exchange_.replace(renamed, [&] { return verify(); }); !s) {
     discard_all();
     return s;
   }
-  for (const File& file : files_) forget_temporary(file.temporary_path);
-  for (const auto& directory : made_) forget_temporary(directory);
+  for (const File& file : files_) forget_temporary(folder_.handle(), file.temporary);
+  for (const auto& made : made_) forget_temporary(made.parent.handle(), made.name);
   files_.clear();
   made_.clear();
   unlock();
   active_ = false;
   note_results_written();
-  say(path_ + " holds the results of this run" + (aside_.empty() ? "" : "; " + aside_), aside_);
+  say(path() + " holds the results of this run" + (aside_.empty() ? "" : "; " + aside_), aside_);
   return Ok{};
 }
 

@@ -2,6 +2,7 @@
 // lost.
 //
 // Every file is written to a hidden temporary name beside its final one, flushed to the disk, and renamed by commit().
+// All of it goes through a handle of the directory: no link that stands there is followed, nothing outside is touched.
 // A run that ends in any other way, by an error or a signal, takes its temporary files with it. What an earlier run of
 // the same command left stays as it is until commit() replaces it, or until set_aside() moves it into a folder below:
 // from then on no old program can be taken for a new one.
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "app/base/output_exchange.h"
+#include "app/files/folder.h"
 #include "geometry/base/result.h"
 
 namespace toothpath::app {
@@ -29,10 +31,15 @@ class OutputDir {
   /// @param inputs     files that the command reads: those that it would replace are refused (kind `usage`)
   /// @param previous   folder for set_aside(); empty: the command does not call it
   /// Other errors, all `file_access`: not a directory, not writable, another run is writing into it, a directory in the
-  /// place of an output, something else than a writable directory in the place of `previous`.
+  /// place of an output, something else than a writable directory in the place of `previous`, marks of a killed run
+  /// that none of ours can have left (OutputExchange::recover()).
   [[nodiscard]] static Result<OutputDir> open(const std::string& path, const std::vector<std::string>& own_names,
                                               const std::vector<std::string>& inputs = {},
                                               const std::string& previous = {});
+  /// The same of a folder of the program's own, `name` below `path`: a link in its place is refused.
+  [[nodiscard]] static Result<OutputDir> open_below(const std::string& path, const std::string& name,
+                                                    const std::vector<std::string>& own_names,
+                                                    const std::vector<std::string>& inputs = {});
 
   OutputDir(OutputDir&& other) noexcept;
   OutputDir& operator=(OutputDir&&) = delete;
@@ -40,7 +47,7 @@ class OutputDir {
   /// Discards what was not committed; a directory that open() made and that is still empty goes too.
   ~OutputDir();
 
-  /// Refused (kind `usage`): a file that has been read as an input until now (toml::inputs_read()) and that this
+  /// Refused (kind `usage`): a file that has been read as an input until now (inputs_read()) and that this
   /// command would replace. open() asks for those of its list, set_aside() and commit() for all; a command that works
   /// long between the two asks by itself.
   [[nodiscard]] Status keeps_inputs() const;
@@ -50,13 +57,14 @@ class OutputDir {
   /// is where it was.
   Status set_aside();
 
-  /// Writes a file under its temporary name. `name` has no slash. Errors: `file_access` (disk full, ...).
+  /// Writes a file under its temporary name. `name` has no slash; what is not among the command's names is discarded
+  /// before commit(). Errors: `file_access` (disk full, ...).
   Status write(std::string_view name, std::string_view content);
   /// The bytes on disk of a file written before.
   [[nodiscard]] Result<std::string> read_back(std::string_view name) const;
   /// Path that the file will have; for messages.
   [[nodiscard]] std::string final_path(std::string_view name) const;
-  [[nodiscard]] const std::string& path() const { return path_; }  ///< as the user wrote it
+  [[nodiscard]] const std::string& path() const { return folder_.path(); }  ///< as the user wrote it
   /// Drops a file written before (an NC program that turned out not to be safe).
   void discard(std::string_view name);
   /// All of them whose name `is_one`.
@@ -72,11 +80,16 @@ class OutputDir {
   [[nodiscard]] static std::string closing_note();
 
  private:
-  OutputDir(std::string path, const std::vector<std::string>& own_names, const std::string& previous);
+  OutputDir(files::Folder folder, std::vector<files::Folder::Made> made, const std::vector<std::string>& own_names,
+            const std::string& previous);
   struct File {
-    std::string name, temporary_path;
+    std::string name, temporary;
     std::string sha256;  ///< of what was written
   };
+  using MakeFolder = std::function<Result<files::Folder>(std::vector<files::Folder::Made>& made)>;
+  [[nodiscard]] static Result<OutputDir> opened(const MakeFolder& make, const std::vector<std::string>& own_names,
+                                                const std::vector<std::string>& inputs, const std::string& previous);
+  [[nodiscard]] Status prepare(const std::vector<std::string>& inputs);
   [[nodiscard]] Status lock();
   void unlock();
   [[nodiscard]] Status refuse_replaced_inputs(const std::vector<std::string>& inputs) const;
@@ -86,11 +99,11 @@ class OutputDir {
   void discard_all();
   [[nodiscard]] const File* find(std::string_view name) const;
 
-  std::string path_;
+  files::Folder folder_;
   OutputNames names_;
   std::string previous_;
   OutputExchange exchange_;
-  std::vector<std::string> made_;  ///< directories made by open(), outermost first
+  std::vector<files::Folder::Made> made_;  ///< directories made by open(), outermost first
   std::vector<File> files_;
   std::string aside_;  ///< what set_aside() moved, in words
   int lock_ = -1;

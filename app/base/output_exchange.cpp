@@ -1,28 +1,25 @@
 #include "app/base/output_exchange.h"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
-#include <filesystem>
-#include <iterator>
-#include <sstream>
+#include <initializer_list>
 
-#include "machines/toml/regular_file.h"
 #include "postproc/controls/registry.h"
 
 namespace toothpath::app {
 namespace {
 
-namespace fs = std::filesystem;
+using files::cannot;
+using files::Folder;
+using files::Kind;
 
 // Marks on the disk, in the order in which a move makes them.
 constexpr const char* kAside = ".toothpath-aside";  ///< folder: files on their way out of the directory
 constexpr const char* kJournal =
-    ".toothpath-journal";                         ///< kAside is complete; what stands under the names in here is new
+    ".toothpath-journal";  ///< file: kAside is complete; what stands under the names in here is new
 constexpr const char* kDone = ".toothpath-done";  ///< kAside, renamed: the new files stay, those in here go
 // "-" and the name of `previous` follow:
 constexpr const char* kKept = ".toothpath-kept-";    ///< kAside, renamed: complete, becomes `previous`
@@ -30,69 +27,20 @@ constexpr const char* kOlder = ".toothpath-older-";  ///< `previous`, renamed: g
 constexpr std::size_t kMostJournalBytes = 1 << 16;
 constexpr std::size_t kMostDigits = 3;  // of a numbered program
 
-bool exists(const std::string& path) {
-  struct stat status {};
-  return ::lstat(path.c_str(), &status) == 0;
-}
-
-bool is_folder(const std::string& path) {
-  struct stat status {};
-  return ::lstat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
-}
-
-std::vector<std::string> entries_of(const std::string& directory) {
-  std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error))
-    names.push_back(it->path().filename().string());
-  return names;
-}
-
 bool is_nc_program(const std::string& name) {
   const auto extensions = controls::program_extensions();
   return std::any_of(extensions.begin(), extensions.end(), [&](const std::string& e) { return name.ends_with(e); });
 }
 
-Status moved(const std::string& from, const std::string& to) {
-  if (::rename(from.c_str(), to.c_str()) == 0) return Ok{};
-  return cannot("move", from, errno);
-}
-
-Status removed(const std::string& path) {
-  if (::unlink(path.c_str()) == 0 || errno == ENOENT) return Ok{};
-  return cannot("remove", path, errno);
-}
-
-/// A folder with nothing but files of ours.
-Status removed_with_files(const std::string& folder) {
-  for (const auto& name : entries_of(folder))
-    if (auto s = removed(folder + "/" + name); !s) return s;
-  if (::rmdir(folder.c_str()) == 0 || errno == ENOENT) return Ok{};
-  return cannot("remove", folder, errno);
+Diagnostic no_mark(const Folder& folder, const std::string& name, const std::string& why) {
+  return {DiagnosticKind::file_access,
+          {folder.at(name), 0, 0},
+          fmt::format("{}: no run of this command left it there, and nothing was touched; look at it and take it away, "
+                      "or give another directory",
+                      why)};
 }
 
 }  // namespace
-
-Diagnostic cannot(const char* what, const std::string& path, int error) {
-  return {DiagnosticKind::file_access, {path, 0, 0}, fmt::format("cannot {}: {}", what, std::strerror(error))};
-}
-
-int write_all(int descriptor, std::string_view content) {
-  while (!content.empty()) {
-    const ssize_t written = ::write(descriptor, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return errno;
-    content.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
-}
-
-void flush_directory(const std::string& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
-  ::close(descriptor);
-}
 
 OutputNames::OutputNames(const std::vector<std::string>& names) {
   for (const auto& name : names)
@@ -120,16 +68,16 @@ bool OutputNames::contains(std::string_view name) const {
   return is_program(name) || std::find(others_.begin(), others_.end(), name) != others_.end();
 }
 
-std::vector<std::string> OutputNames::standing_in(const std::string& directory) const {
+std::vector<std::string> OutputNames::standing_in(const Folder& folder) const {
   std::vector<std::string> standing;
   const auto add = [&](const std::vector<std::string>& names) {
     std::copy_if(names.begin(), names.end(), std::back_inserter(standing),
-                 [&](const std::string& name) { return exists(directory + "/" + name); });
+                 [&](const std::string& name) { return folder.has(name); });
   };
   add(programs_);
   if (!numbered_.empty()) {
     const std::size_t before = standing.size();
-    for (std::string& name : entries_of(directory))
+    for (std::string& name : folder.names())
       if (is_program(name) && std::find(programs_.begin(), programs_.end(), name) == programs_.end())
         standing.push_back(std::move(name));
     std::sort(standing.begin() + static_cast<std::ptrdiff_t>(before), standing.end());
@@ -138,33 +86,48 @@ std::vector<std::string> OutputNames::standing_in(const std::string& directory) 
   return standing;
 }
 
-OutputExchange::OutputExchange(std::string directory, OutputNames names, std::string previous)
-    : directory_(std::move(directory)), names_(std::move(names)), previous_(std::move(previous)) {
+OutputExchange::OutputExchange(Folder folder, OutputNames names, std::string previous)
+    : folder_(std::move(folder)), names_(std::move(names)), previous_(std::move(previous)) {
   if (previous_.empty()) return;
   kept_ = kKept + previous_;
   older_ = kOlder + previous_;
 }
 
 Status OutputExchange::check() const {
-  const auto no_folders = [&](const std::string& directory) -> Status {
-    for (const auto& name : names_.standing_in(directory))
-      if (is_folder(directory + "/" + name)) return cannot("replace", directory + "/" + name, EISDIR);
+  const auto no_folders = [&](const Folder& folder) -> Status {
+    for (const auto& name : names_.standing_in(folder))
+      if (folder.kind(name) == Kind::folder) return cannot("replace", folder.at(name), EISDIR);
     return Ok{};
   };
-  if (auto s = no_folders(directory_); !s) return s;
-  const std::string folder = at(previous_);
-  if (previous_.empty() || !exists(folder)) return Ok{};
-  if (!is_folder(folder)) return cannot("keep earlier results in", folder, ENOTDIR);
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) return cannot("keep earlier results in", folder, errno);
-  return no_folders(folder);
+  if (auto s = no_folders(folder_); !s) return s;
+  if (previous_.empty() || !folder_.has(previous_)) return Ok{};
+  const auto previous = folder_.below(previous_);
+  if (!previous) return previous.error();
+  if (!previous->may_write()) return cannot("keep earlier results in", previous->path(), errno);
+  return no_folders(*previous);
+}
+
+/// Marks are a regular file and real folders, and `previous` is one.
+Status OutputExchange::check_marks() const {
+  if (!previous_.empty())
+    if (const Kind kind = folder_.kind(previous_); kind != Kind::nothing && kind != Kind::folder)
+      return cannot("keep earlier results in", folder_.at(previous_), ENOTDIR);
+  if (const Kind kind = folder_.kind(kJournal); kind != Kind::nothing && kind != Kind::file)
+    return no_mark(folder_, kJournal, "is not a regular file");
+  for (const std::string& name : {std::string(kAside), std::string(kDone), kept_, older_})
+    if (const Kind kind = folder_.kind(name); kind != Kind::nothing && kind != Kind::folder)
+      return no_mark(folder_, name, "is not a folder");
+  return Ok{};
 }
 
 /// Files of the names to kAside, programs first.
 Status OutputExchange::take_out(const std::vector<std::string>& names) const {
-  if (::mkdir(at(kAside).c_str(), 0777) != 0) return cannot("make the directory", at(kAside), errno);
+  if (auto s = folder_.make_folder(kAside); !s) return s;
+  const auto aside = folder_.below(kAside);
+  if (!aside) return aside.error();
   for (const auto& name : names) {
-    if (is_folder(at(name))) continue;  // made since check(): what would replace it fails with its name
-    if (auto s = moved(at(name), at(kAside) + "/" + name); !s) {
+    if (folder_.kind(name) == Kind::folder) continue;  // since check(): what would replace it fails with its name
+    if (auto s = folder_.move(name, *aside, name); !s) {
       (void)put_back();  // what cannot move now is moved by the next recover()
       return s;
     }
@@ -174,23 +137,23 @@ Status OutputExchange::take_out(const std::vector<std::string>& names) const {
 
 /// Files from kAside to their places, programs last (of whatever command they are); nobody else's file is overwritten.
 Status OutputExchange::put_back() const {
-  const std::string aside = at(kAside);
-  if (!exists(aside)) return Ok{};
-  auto names = entries_of(aside);
+  if (!folder_.has(kAside)) return Ok{};
+  const auto aside = folder_.below(kAside);
+  if (!aside) return aside.error();
+  auto names = aside->names();
   std::stable_partition(names.begin(), names.end(), [](const std::string& name) { return !is_nc_program(name); });
   for (const auto& name : names) {
-    if (exists(at(name))) return cannot("put back what a run that was killed left", aside + "/" + name, EEXIST);
-    if (auto s = moved(aside + "/" + name, at(name)); !s) return s;
+    if (folder_.has(name)) return cannot("put back what a run that was killed left", aside->at(name), EEXIST);
+    if (auto s = aside->move(name, folder_, name); !s) return s;
   }
-  if (::rmdir(aside.c_str()) != 0) return cannot("remove", aside, errno);
-  return Ok{};
+  return folder_.remove_folder(kAside);
 }
 
 Status OutputExchange::recover() const {
-  if (exists(at(kDone))) {
-    end_replace();
-    if (exists(at(kDone))) return cannot("remove", at(kDone), EACCES);
-  } else if (exists(at(kJournal))) {
+  if (auto s = check_marks(); !s) return s;
+  if (folder_.has(kDone)) {
+    if (auto s = end_replace(); !s) return s;
+  } else if (folder_.has(kJournal)) {
     if (auto s = undo_replace(); !s) return s;
   }
   if (auto s = put_back(); !s) return s;
@@ -198,117 +161,137 @@ Status OutputExchange::recover() const {
 }
 
 Status OutputExchange::set_aside() const {
-  if (auto s = take_out(names_.standing_in(directory_)); !s) return s;
-  flush_directory(directory_);
+  if (auto s = take_out(names_.standing_in(folder_)); !s) return s;
+  folder_.flush();
   if (auto s = aside_to_previous(); !s) {
     (void)put_back();
     return s;
   }
-  flush_directory(directory_);
+  folder_.flush();
   (void)end_previous();  // what stays of the older set is hidden, and goes with the next recover()
   return Ok{};
 }
 
 /// Three renames of whole folders; failed: kAside is complete again and `previous` as it was.
 Status OutputExchange::aside_to_previous() const {
-  const std::string aside = at(kAside), kept = at(kept_), older = at(older_), previous = at(previous_);
-  if (auto s = moved(aside, kept); !s) return s;
-  const bool replaces = exists(previous);
-  if (auto s = replaces ? moved(previous, older) : Status(Ok{}); !s) {
-    (void)moved(kept, aside);
+  if (auto s = folder_.move(kAside, folder_, kept_); !s) return s;
+  const bool replaces = folder_.has(previous_);
+  if (auto s = replaces ? folder_.move(previous_, folder_, older_) : Status(Ok{}); !s) {
+    (void)folder_.move(kept_, folder_, kAside);
     return s;
   }
-  if (auto s = moved(kept, previous); !s) {
-    if (replaces) (void)moved(older, previous);
-    (void)moved(kept, aside);
+  if (auto s = folder_.move(kept_, folder_, previous_); !s) {
+    if (replaces) (void)folder_.move(older_, folder_, previous_);
+    (void)folder_.move(kept_, folder_, kAside);
     return s;
   }
   return Ok{};
 }
 
 Status OutputExchange::recover_previous() const {
-  const std::string kept = at(kept_), older = at(older_), previous = at(previous_);
-  if (exists(kept)) {  // complete: it becomes `previous`
-    if (exists(previous) && !exists(older))
-      if (auto s = moved(previous, older); !s) return s;
-    if (auto s = moved(kept, previous); !s) return s;
-  } else if (exists(older) && !exists(previous)) {
-    return moved(older, previous);
+  if (folder_.has(kept_)) {  // complete: it becomes `previous`
+    if (folder_.has(previous_) && !folder_.has(older_))
+      if (auto s = folder_.move(previous_, folder_, older_); !s) return s;
+    if (auto s = folder_.move(kept_, folder_, previous_); !s) return s;
+  } else if (folder_.has(older_) && !folder_.has(previous_)) {
+    return folder_.move(older_, folder_, previous_);
   }
   return end_previous();
 }
 
 /// Of the set before the last one our files go; what somebody else put there stays in `previous`.
 Status OutputExchange::end_previous() const {
-  const std::string older = at(older_);
-  if (!exists(older)) return Ok{};
-  for (const auto& name : entries_of(older)) {
-    const std::string path = older + "/" + name;
-    if (auto s = names_.contains(name) && !is_folder(path) ? removed(path) : moved(path, at(previous_) + "/" + name);
-        !s)
-      return s;
+  if (!folder_.has(older_)) return Ok{};
+  const auto older = folder_.below(older_), previous = folder_.below(previous_);
+  if (!older) return older.error();
+  if (!previous) return previous.error();
+  for (const auto& name : older->names()) {
+    const bool ours = names_.contains(name) && older->kind(name) != Kind::folder;
+    if (!ours && previous->has(name)) return cannot("keep what lies in", older->at(name), EEXIST);
+    if (auto s = ours ? older->remove(name) : older->move(name, *previous, name); !s) return s;
   }
-  if (::rmdir(older.c_str()) != 0) return cannot("remove", older, errno);
-  return Ok{};
+  return folder_.remove_folder(older_);
 }
 
 Status OutputExchange::write_journal(const std::vector<NewFile>& files) const {
-  const std::string temporary = fmt::format("{}/.toothpath-{}-journal", directory_, ::getpid());
-  const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (descriptor < 0) return cannot("write", temporary, errno);
+  const std::string temporary = fmt::format(".toothpath-{}-journal", ::getpid());
   std::string text;
   for (const auto& file : files) text += file.name + "\n";
-  int error = write_all(descriptor, text);
-  if (::close(descriptor) != 0 && error == 0) error = errno;
-  if (error == 0 && ::rename(temporary.c_str(), at(kJournal).c_str()) != 0) error = errno;
-  if (error == 0) return Ok{};
-  ::unlink(temporary.c_str());
-  return cannot("write", temporary, error);
+  if (auto s = folder_.remove(temporary); !s) return s;
+  if (auto s = folder_.write_new(temporary, text); !s) return s;
+  auto named = folder_.move(temporary, folder_, kJournal);
+  if (!named) (void)folder_.remove(temporary);
+  return named;
+}
+
+/// Names in the order in which they were given.
+Result<std::vector<std::string>> OutputExchange::read_journal() const {
+  const auto journal = folder_.read(kJournal, kMostJournalBytes);
+  if (!journal) return journal.error();
+  std::vector<std::string> names;
+  std::string_view left = *journal;
+  while (!left.empty()) {
+    const std::size_t end = left.find('\n');
+    names.emplace_back(left.substr(0, end));
+    left.remove_prefix(end == std::string_view::npos ? left.size() : end + 1);
+    if (!names_.contains(names.back())) {
+      Diagnostic foreign = no_mark(folder_, kJournal, fmt::format("\"{}\" is no output of this command", names.back()));
+      foreign.position.line = static_cast<int>(names.size());
+      foreign.position.column = 1;
+      return foreign;
+    }
+  }
+  return names;
 }
 
 /// New files go, then the journal, then what they replaced comes back: in this order none of the old ones is taken for
 /// a new one.
 Status OutputExchange::undo_replace() const {
-  const auto journal = toml::read_regular_file(at(kJournal), kMostJournalBytes);
-  if (!journal) return journal.error();
-  std::vector<std::string> names;
-  std::istringstream lines(*journal);
-  for (std::string name; std::getline(lines, name);) names.push_back(name);
-  for (auto it = names.rbegin(); it != names.rend(); ++it)  // programs were named last
-    if (!is_folder(at(*it)))
-      if (auto s = removed(at(*it)); !s) return s;
-  if (auto s = removed(at(kJournal)); !s) return s;
+  const auto names = read_journal();
+  if (!names) return names.error();
+  for (auto it = names->rbegin(); it != names->rend(); ++it)  // programs were named last
+    if (folder_.kind(*it) != Kind::folder)
+      if (auto s = folder_.remove(*it); !s) return s;
+  if (auto s = folder_.remove(kJournal); !s) return s;
   return put_back();
 }
 
 /// The journal first: while it stands, kDone says that the new files stay.
-void OutputExchange::end_replace() const {
-  if (removed(at(kJournal))) (void)removed_with_files(at(kDone));
+Status OutputExchange::end_replace() const {
+  const auto done = folder_.below(kDone);
+  if (!done) return done.error();
+  const auto names = done->names();
+  for (const auto& name : names)
+    if (!names_.contains(name) || done->kind(name) == Kind::folder)
+      return no_mark(*done, name, "is no output of this command");
+  if (auto s = folder_.remove(kJournal); !s) return s;
+  for (const auto& name : names)
+    if (auto s = done->remove(name); !s) return s;
+  return folder_.remove_folder(kDone);
 }
 
 Status OutputExchange::replace(const std::vector<NewFile>& files, const std::function<Status()>& verify) const {
-  std::vector<std::string> in_the_way = names_.standing_in(directory_);
-  for (const auto& file : files)
-    if (!names_.contains(file.name) && exists(at(file.name))) in_the_way.push_back(file.name);
-  if (auto s = take_out(in_the_way); !s) return s;
-  flush_directory(directory_);
+  if (auto s = take_out(names_.standing_in(folder_)); !s) return s;
+  folder_.flush();
   if (auto s = write_journal(files); !s) {
     (void)put_back();
     return s;
   }
   const auto named = [&]() -> Status {
     for (const auto& file : files)
-      if (::rename(file.temporary_path.c_str(), at(file.name).c_str()) != 0)
-        return cannot("write", at(file.name), errno);
-    flush_directory(directory_);
+      if (auto s = folder_.move(file.temporary, folder_, file.name); !s) {
+        s.error().position.file = folder_.at(file.name);
+        return s;
+      }
+    folder_.flush();
     if (auto s = verify(); !s) return s;
-    return moved(at(kAside), at(kDone));
+    return folder_.move(kAside, folder_, kDone);
   }();
   if (!named) {
     (void)undo_replace();  // what cannot be undone now is undone by the next recover()
     return named;
   }
-  end_replace();
+  (void)end_replace();  // or by the next recover()
   return Ok{};
 }
 

@@ -8,21 +8,21 @@
 #include <nlohmann/json.hpp>
 
 #include "app/report/svg/html_text.h"
-#include "machines/toml/regular_file.h"
 
 namespace toothpath::app {
 namespace {
 
+constexpr const char* kReport = "report.json";
 constexpr std::size_t kMostReportBytes = std::size_t(1) << 26;
 constexpr std::size_t kShownDigits = 12;  // of a hash
 constexpr std::size_t kLongestName = 80;
 
 /// Local time at which the file was written; empty where that is not known.
-std::string time_of(const std::string& path) {
+std::string time_of(const files::Folder& folder, const std::string& name) {
   struct stat status {};
   std::tm local{};
   char text[32] = "";
-  if (::lstat(path.c_str(), &status) != 0 || ::localtime_r(&status.st_mtime, &local) == nullptr) return {};
+  if (!folder.look(name, status) || ::localtime_r(&status.st_mtime, &local) == nullptr) return {};
   return std::string(text, std::strftime(text, sizeof text, " of %Y-%m-%d %H:%M", &local));
 }
 
@@ -36,16 +36,14 @@ std::string text_in(const nlohmann::json& object, const char* key) {
 
 }  // namespace
 
-std::string describe_results(const std::string& directory, const std::vector<std::string>& names) {
+std::string describe_results(const files::Folder& folder, const std::vector<std::string>& names) {
   if (names.empty()) return {};
-  const std::string report_path = directory + "/report.json";
   nlohmann::json report;
-  if (std::find(names.begin(), names.end(), "report.json") != names.end())
-    if (const auto text = toml::read_regular_file(report_path, kMostReportBytes))
-      report = nlohmann::json::parse(*text, nullptr, false);
+  if (std::find(names.begin(), names.end(), kReport) != names.end())
+    if (const auto text = folder.read(kReport, kMostReportBytes)) report = nlohmann::json::parse(*text, nullptr, false);
   const std::string job = text_in(report, "job"), command = text_in(report, "command");
-  if (job.empty()) return names.front() + time_of(directory + "/" + names.front());
-  std::string out = fmt::format("{} \"{}\"{}", command.empty() ? "job" : command, job, time_of(report_path));
+  if (job.empty()) return names.front() + time_of(folder, names.front());
+  std::string out = fmt::format("{} \"{}\"{}", command.empty() ? "job" : command, job, time_of(folder, kReport));
   const nlohmann::json program = report.contains("program") ? report["program"] : nlohmann::json();
   const std::string file = text_in(program, "file"), digits = text_in(program, "sha256");
   if (std::find(names.begin(), names.end(), file) != names.end())

@@ -1,7 +1,6 @@
 #include "app/commands/contact.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <tuple>
 
@@ -39,8 +38,7 @@ Status check_request(const ContactRequest& r) {
                                std::end(process::kModifiable))
     return usage(fmt::format("--modify {}: gear, pinion or both is needed", printable(r.modify)));
   if (r.write_file.empty()) return Ok{};
-  if (std::filesystem::exists(r.write_file))
-    return usage(fmt::format("--write: {} exists already, and is not replaced", r.write_file));
+  if (auto fresh = app::check_new_file(r.write_file, "--write"); !fresh) return fresh;
   for (const auto& [given, option, key] :
        {std::tuple(r.pinion_teeth.has_value(), "--pinion-teeth", "pinion_teeth"),
         {r.offset_error_mm.has_value(), "--offset-error", "offset_error"},

@@ -1,15 +1,20 @@
 // `toothpath new`: a job for a gear and a machine, asked for on a terminal or said by options, proven before it is
 // written.
+#include <fcntl.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "app/base/dialog.h"
+#include "app/base/interruption.h"
 #include "app/base/new_file.h"
 #include "app/commands/run.h"
 #include "app/commands/shaper.h"
@@ -17,6 +22,7 @@
 #include "app/job/job.h"
 #include "app/proposal/library_shelf.h"
 #include "app/proposal/propose.h"
+#include "geometry/base/json_text.h"
 #include "geometry/base/printable.h"
 #include "machines/machine_file.h"
 
@@ -140,27 +146,42 @@ DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, const Dialo
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string path = (fs::temp_directory_path() / "toothpath-new-XXXXXX").string();
-    if (::mkdtemp(path.data())) path_ = path;
+    const char* told = std::getenv("TMPDIR");
+    const std::string place = told && *told ? told : "/tmp";
+    path_ = place + "/toothpath-new-XXXXXX";
+    if (::mkdtemp(path_.data())) {
+      (void)app::register_temporary(AT_FDCWD, path_, true);
+    } else {
+      error_ = errno;
+      path_ = place;
+    }
   }
   ~TemporaryFolder() {
-    std::error_code error;
-    if (!path_.empty()) fs::remove_all(path_, error);
+    if (error_ != 0) return;
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+    app::forget_temporary(AT_FDCWD, path_);
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] const std::string& path() const { return path_; }  ///< where it is not there, of its parent
+  [[nodiscard]] int error() const { return error_; }               ///< why it is not there, as in errno
 
  private:
   std::string path_;
+  int error_ = 0;
 };
 
 /// The job as `run` or `shaper` finds it.
 CommandOutcome prove(const app::UnnamedFile& job, const std::string& text, bool shaped, bool quiet) {
   const TemporaryFolder folder;
-  if (folder.path().empty())
-    return failed(Diagnostic{DiagnosticKind::file_access, {}, "no temporary folder can be written"});
-  if (!job.write(text)) return failed(Diagnostic{DiagnosticKind::file_access, {job.path(), 0, 0}, "cannot be written"});
+  if (folder.error() != 0)
+    return failed(Diagnostic{DiagnosticKind::file_access,
+                             {folder.path(), 0, 0},
+                             fmt::format("cannot make a folder in which the job is tried: {}; name a place that can "
+                                         "be written in TMPDIR",
+                                         std::strerror(folder.error()))});
+  if (const auto written = job.write(text); !written) return failed(written.error());
   RunRequest request;
   request.job_file = job.path();
   request.out_dir = folder.path() + "/out";
@@ -192,7 +213,7 @@ std::string schema_url() {
   const std::string path = machines::schema_file("job.schema.json");
   if (path.empty()) return {};
   std::string url = "file://";
-  for (const char c : fs::absolute(path).lexically_normal().string()) {
+  for (const char c : fs::path(path).lexically_normal().string()) {
     const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
                        std::string_view("/-._~").find(c) != std::string_view::npos;
     url += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
@@ -244,7 +265,7 @@ CommandOutcome told(const NewRequest& request, const Proposed& proposed, const p
   out += fmt::format("next: toothpath {} {} --out DIR\n",
                      proposed.draft.wishes.route == proposal::Route::shaped ? "shaper" : "run", request.file);
   outcome.summary = out;
-  outcome.report_json = json.dump(2) + "\n";
+  outcome.report_json = json_text(json, 2) + "\n";
   return outcome;
 }
 
@@ -347,6 +368,15 @@ Expected<proposal::Shelf, std::vector<Diagnostic>> ask_for_tools(LibraryShelf& l
   return shelf;
 }
 
+/// A job is UTF-8 and its texts are visible; names of files may be any bytes.
+Status can_be_named(const char* option, const std::string& text) {
+  if (printable(text) == text) return Ok{};
+  return fail_at({text, 0, 0},
+                 "{}: a job cannot name it: there are bytes in it that are not UTF-8, or signs that cannot "
+                 "be seen; give it another name",
+                 option);
+}
+
 /// The tools of --tools: of a job, or of a file of another program.
 DoneOrErrors choose_tools(const NewRequest& request, const Dialog& dialog, Choice& choice) {
   const bool library_file = !request.tools.empty() && fs::path(request.tools).extension() != ".toml";
@@ -382,9 +412,14 @@ DoneOrErrors choose_tools(const NewRequest& request, const Dialog& dialog, Choic
                              fmt::format("at most {:.3f} mm, flutes of at least {:.2f} mm",
                                          choice.gear.facts.most_finishing_mm(), choice.gear.facts.depth)));
   std::error_code error;
-  const fs::path directory = fs::absolute(request.file).parent_path();
-  const fs::path near = fs::proximate(fs::absolute(request.tools), directory, error);
-  choice.library = library.words(error ? request.tools : near.string());
+  const fs::path from = fs::path(request.file).parent_path(),
+                 near = fs::proximate(request.tools, from.empty() ? "." : from, error);
+  if (error)
+    return std::vector{Diagnostic{DiagnosticKind::file_access,
+                                  {request.tools, 0, 0},
+                                  "where it lies, seen from the job, is not known: " + error.message()}};
+  if (auto named = can_be_named("--tools", near.string()); !named) return std::vector{named.error()};
+  choice.library = library.words(near.string());
   return Ok{};
 }
 
@@ -413,10 +448,10 @@ Expected<Choice, std::vector<Diagnostic>> choose(const NewRequest& request, cons
 CommandOutcome run_new(const NewRequest& asked) {
   NewRequest request = asked;
   if (request.file.empty()) return failed(usage("-o is missing: the job file to write"));
-  if (fs::exists(request.file))
-    return failed(
-        Diagnostic{DiagnosticKind::usage, {}, fmt::format("-o: {} exists already, and is not replaced", request.file)});
+  if (const auto fresh = app::check_new_file(request.file, "-o"); !fresh) return failed(fresh.error());
   if (request.name.empty()) request.name = fs::path(request.file).stem().string();
+  for (const auto& [option, text] : {std::pair("--name", &request.name), {"--machine", &request.machine}})
+    if (const auto named = can_be_named(option, *text); !named) return failed(named.error());
   const Dialog dialog(request.quiet);
   auto chosen = choose(request, dialog);
   if (auto* errors = chosen.refused()) return failed(std::move(*errors));
@@ -430,7 +465,8 @@ CommandOutcome run_new(const NewRequest& asked) {
   if (auto* errors = proposed.refused()) return failed(std::move(*errors));
   CommandOutcome& proof = proposed.value().proof;
   if (proof.exit_code != app::ExitCode::ok && proof.exit_code != app::ExitCode::unverified) {
-    for (Diagnostic& error : proof.errors) error.position = {};
+    for (Diagnostic& error : proof.errors)
+      if (error.kind != DiagnosticKind::file_access) error.position = {};  // a place in a job that goes again
     return failed(std::move(proof.errors));
   }
   proposal::Told limits = limits_of(choice.wishes);

@@ -10,6 +10,7 @@
 #include "app/proposal/gear_limits.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
+#include "machines/toml/quoted.h"
 
 namespace toothpath::proposal {
 namespace {
@@ -75,7 +76,7 @@ std::string bevel_text(const Wishes& wishes) {
 }
 
 std::string value_text(const toml::TomlValue& value) {
-  if (const std::string* text = value.text()) return fmt::format("\"{}\"", *text);
+  if (const std::string* text = value.text()) return toml::quoted(*text);
   if (const auto* whole = std::get_if<std::int64_t>(&value.data)) return fmt::format("{}", *whole);
   if (const auto number = value.number()) return real(*number);
   std::string all;
@@ -87,7 +88,7 @@ std::string value_text(const toml::TomlValue& value) {
 /// A tool of a library: its file says what does not stand here.
 std::string library_tool_text(const tool::ToolAssembly& tool, const LibraryWords& library) {
   std::string text = fmt::format("\n[[tool]]\nnumber = {}\n", tool.number);
-  text += line("library", fmt::format("\"{}\"", library.file), "says of this tool what does not stand here");
+  text += line("library", toml::quoted(library.file), "says of this tool what does not stand here");
   const auto said = library.said.find(tool.number);
   if (said != library.said.end())
     for (const toml::TomlEntry& entry : said->second.entries) text += line(entry.key.c_str(), value_text(entry.value));
@@ -195,7 +196,7 @@ std::string finger_operations(const Draft& draft) {
 }
 
 std::string machine_table(const Draft& draft) {
-  std::string text = "\n[machine]\n" + line("file", fmt::format("\"{}\"", draft.wishes.machine),
+  std::string text = "\n[machine]\n" + line("file", toml::quoted(draft.wishes.machine),
                                             "looked up beside this job, then among the installed machines");
   if (draft.assumed) text += line("accept_assumed", "true", "values of it are assumed: every page says so");
   return text;
@@ -212,7 +213,7 @@ std::string shaping_text() {
 }  // namespace
 
 std::string gear_text(const std::string& name, const Wishes& wishes) {
-  return fmt::format("schema = 1\nname = \"{}\"\n", name) +
+  return fmt::format("schema = 1\nname = {}\n", toml::quoted(name)) +
          (wishes.gear == Gear::bevel_herringbone ? bevel_text(wishes) : face_text(wishes));
 }
 
@@ -226,7 +227,7 @@ std::string job_text(const Draft& draft, const LibraryWords& library, const std:
   text += line("origin", vector_text(draft.place.origin_mm), "gear frame in machine coordinates, all rotaries at zero");
   text += line("axis", bevel ? "\"down\"" : "\"up\"",
                bevel ? "gear z points down: apex on top" : "teeth towards the spindle");
-  text += line("work_offset", fmt::format("\"{}\"", draft.work_offset), "the program counts from it");
+  text += line("work_offset", toml::quoted(draft.work_offset), "the program counts from it");
   text += line("work_offset_at", vector_text(draft.place.origin_mm));
   const auto tool = [&](const tool::ToolAssembly& t) {
     return library.file.empty() ? tool_text(t, draft.depth_mm) : library_tool_text(t, library);

@@ -15,9 +15,9 @@
 #include "app/process/bevel/files.h"
 #include "app/process/gear_of_job.h"
 #include "app/report/limits/json.h"
+#include "geometry/base/inputs_read.h"
 #include "geometry/inspection/grid.h"
 #include "geometry/mesh/bevel_mesh.h"
-#include "machines/toml/regular_file.h"
 
 namespace toothpath::python {
 namespace {
@@ -171,7 +171,7 @@ Report run(const std::filesystem::path& job, const std::filesystem::path& out, c
     const py::gil_scoped_release others_go_on;
     static std::mutex one_at_a_time;  // a process has one output directory at a time, and one list of inputs
     const std::lock_guard lock(one_at_a_time);
-    toml::forget_inputs_read();
+    forget_inputs_read();
     std::optional<tbb::global_control> limit;
     if (threads) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(*threads));
     outcome = commands::run_job(request);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "geometry/base/hash.h"
+#include "geometry/base/inputs_read.h"
 #include "geometry/mesh/obj_scan.h"
 #include "geometry/mesh/solid_check.h"
 #include "geometry/mesh/stl_scan.h"
@@ -167,6 +168,7 @@ Result<TriangleMesh> parse_mesh(std::string_view bytes, const std::string& name,
 }
 
 Result<TriangleMesh> load_mesh(const std::string& path, const MeshImportLimits& limits) {
+  note_input(path);
   const auto unreadable = [&](std::string why) {
     return Diagnostic{DiagnosticKind::file_access, {path, 0, 0}, std::move(why)};
   };

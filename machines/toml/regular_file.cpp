@@ -4,27 +4,39 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <mutex>
 
 namespace toothpath::toml {
+namespace {
 
-Status for_each_block(const std::string& path, const std::function<Status(std::string_view)>& take) {
-  const auto cannot = [&](const char* what) {
-    return Diagnostic{
-        DiagnosticKind::file_access, {path, 0, 0}, fmt::format("cannot {}: {}", what, std::strerror(errno))};
-  };
-  // O_NONBLOCK: opening a pipe must not wait for its writer.
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-  if (descriptor < 0) return cannot("open");
-  struct Closer {
-    int descriptor;
-    ~Closer() { ::close(descriptor); }
-  } closer{descriptor};
+Diagnostic cannot(const char* what, const std::string& path) {
+  return {DiagnosticKind::file_access, {path, 0, 0}, fmt::format("cannot {}: {}", what, std::strerror(errno))};
+}
+
+/// Blocks as they come, put together.
+class Joined {
+ public:
+  Joined(const std::string& path, std::size_t most) : path_(path), most_(most) {}
+
+  Status operator()(std::string_view block) {
+    text += block;
+    if (text.size() > most_) return fail_at({path_, 0, 0}, "is longer than {} bytes", most_);
+    return Ok{};
+  }
+
+  std::string text;
+
+ private:
+  const std::string& path_;
+  std::size_t most_;
+};
+
+}  // namespace
+
+Status for_each_block(int descriptor, const std::string& path, const std::function<Status(std::string_view)>& take) {
   struct stat status {};
-  if (::fstat(descriptor, &status) != 0) return cannot("look at");
+  if (::fstat(descriptor, &status) != 0) return cannot("look at", path);
   const SourcePosition position{path, 0, 0};
   if (S_ISDIR(status.st_mode))
     return Diagnostic{DiagnosticKind::file_access, position, "cannot read: it is a directory"};
@@ -33,46 +45,36 @@ Status for_each_block(const std::string& path, const std::function<Status(std::s
   while (true) {
     const ssize_t got = ::read(descriptor, block, sizeof block);
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return cannot("read");
+    if (got < 0) return cannot("read", path);
     if (got == 0) return Ok{};
     if (auto s = take({block, static_cast<std::size_t>(got)}); !s) return s;
   }
 }
 
-Result<std::string> read_regular_file(const std::string& path, std::size_t max_bytes) {
-  std::string text;
-  const Status read = for_each_block(path, [&](std::string_view block) -> Status {
-    text += block;
-    if (text.size() > max_bytes) return fail_at({path, 0, 0}, "is longer than {} bytes", max_bytes);
-    return Ok{};
-  });
-  if (!read) return read.error();
-  return text;
+Status for_each_block(const std::string& path, const std::function<Status(std::string_view)>& take) {
+  // O_NONBLOCK: opening a pipe must not wait for its writer.
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (descriptor < 0) return cannot("open", path);
+  const Status read = for_each_block(descriptor, path, take);
+  ::close(descriptor);
+  return read;
 }
 
-namespace {
+Result<std::string> read_regular_file(int descriptor, const std::string& path, std::size_t max_bytes) {
+  Joined joined(path, max_bytes);
+  if (auto read = for_each_block(descriptor, path, std::ref(joined)); !read) return read.error();
+  return std::move(joined.text);
+}
 
-std::mutex inputs_mutex;
-std::vector<std::string> inputs;
-
-}  // namespace
+Result<std::string> read_regular_file(const std::string& path, std::size_t max_bytes) {
+  Joined joined(path, max_bytes);
+  if (auto read = for_each_block(path, std::ref(joined)); !read) return read.error();
+  return std::move(joined.text);
+}
 
 Result<std::string> read_input_file(const std::string& path, std::size_t max_bytes) {
-  {
-    const std::lock_guard lock(inputs_mutex);
-    if (std::find(inputs.begin(), inputs.end(), path) == inputs.end()) inputs.push_back(path);
-  }
+  note_input(path);
   return read_regular_file(path, max_bytes);
-}
-
-std::vector<std::string> inputs_read() {
-  const std::lock_guard lock(inputs_mutex);
-  return inputs;
-}
-
-void forget_inputs_read() {
-  const std::lock_guard lock(inputs_mutex);
-  inputs.clear();
 }
 
 }  // namespace toothpath::toml

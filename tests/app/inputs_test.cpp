@@ -156,6 +156,21 @@ TEST_F(Inputs, AFileThatTheJobNamesIsNotReplaced) {
   }
 }
 
+// A mesh is named by the machine file, which the job names.
+TEST_F(Inputs, ABodyOfTheMachineIsNotReplaced) {
+  write_file(out("gear.stl"), tetrahedron(2000));
+  write_file(in("xyzac_large.toml"), file_text(kMachines + "/xyzac_large.toml") +
+                                         "\n[[body]]\nname = \"cabinet\"\nof = \"bed\"\nshape = \"mesh\"\n"
+                                         "file = \"../out/gear.stl\"\n");
+  const Finished refused = run_program({"run", in("spur_quick.toml"), "--out", out()});
+  EXPECT_EQ(refused.exit_code, 2) << refused.err;
+  EXPECT_NE(refused.err.find("gear.stl: error: this input lies where the command writes its own gear.stl"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_EQ(file_text(out("gear.stl")), tetrahedron(2000));
+  EXPECT_EQ(names_in(out()), std::vector<std::string>{"gear.stl"});
+}
+
 // An input that is a link in the place of an output: the file behind it would stay, the user's name for it would go.
 TEST_F(Inputs, ALinkInThePlaceOfAnOutputIsAnInputToo) {
   measure(in("measured.csv"));

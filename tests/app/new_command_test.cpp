@@ -161,6 +161,66 @@ TEST(New, NeverReplacesAFile) {
   EXPECT_EQ(file_text(dir / "job.toml"), "mine\n");
 }
 
+constexpr const char* kFusion = R"({"version": 36, "data": [
+ {"type": "ball end mill", "description": "1 mm ball", "unit": "millimeters", "post-process": {"number": 4},
+  "geometry": {"DC": 1, "LCF": 7, "LB": 27, "SFDM": 4, "NOF": 2, "assemblyGaugeLength": 97},
+  "holder": {"description": "ER11", "gaugeLength": 70, "segments": [{"height": 30, "lower-diameter": 11, "upper-diameter": 11}]}},
+ {"type": "drill", "unit": "millimeters", "post-process": {"number": 8}, "geometry": {"DC": 5}}]})";
+
+/// A spur gear with these tools.
+Words with_tools(const std::string& file, Words more = {}) {
+  Words words = gear("face", "ball", "xyzac_large", {"--teeth", "60", "--module", "2", "--tools", file});
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+TEST(New, WhatANameMeansInTomlIsEscaped) {
+  const TestDir dir;
+  const std::string name = "\"5\" \\wheel\"\nteeth = 3";
+  const Finished refused =
+      run_new(gear("face", "shaped", "y514", {"--teeth", "53", "--module", "2", "--name", name}), dir / "job.toml");
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;  // a line feed is no part of a name
+  EXPECT_TRUE(names_in(dir.path()).empty());
+  const Finished made =
+      run_new(gear("face", "shaped", "y514", {"--teeth", "53", "--module", "2", "--name", "\"5\" \\wheel\""}),
+              dir / "job.toml");
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(file_text(dir / "job.toml").find("name = \"\\\"5\\\" \\\\wheel\\\"\"\n"), std::string::npos);
+  const Finished run = run_program({"surface", dir / "job.toml", "--out", dir / "out", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(run.out)["report"]["job"], "\"5\" \\wheel\"");
+}
+
+TEST(New, ALibraryInAFolderWithQuotesIsNamed) {
+  const TestDir dir;
+  const std::string folder = dir / "my \"tools\"";
+  std::filesystem::create_directory(folder);
+  write_file(folder + "/lib.json", kFusion);
+  const Finished made = run_new(with_tools(folder + "/lib.json", {"--tool", "4: helix = 30"}), dir / "job.toml");
+  EXPECT_NE(made.exit_code, 70) << made.err;
+  if (made.exit_code == 0) {
+    EXPECT_NE(file_text(dir / "job.toml").find("library = \"my \\\"tools\\\"/lib.json\""), std::string::npos);
+  }
+  const std::string latin = dir / "L\xf6ffel";
+  std::filesystem::create_directory(latin);
+  write_file(latin + "/lib.json", kFusion);
+  const Finished refused = run_new(with_tools(latin + "/lib.json"), dir / "other.toml");
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;
+  EXPECT_NE(refused.err.find("lib.json: error: --tools: a job cannot name it"), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(dir / "other.toml"));
+}
+
+TEST(New, WithoutAFolderForTriesNothingIsWritten) {
+  const TestDir dir;
+  Launch launch;
+  launch.arguments = gear("face", "shaped", "y514", {"--teeth", "53", "--module", "2", "-o", dir / "job.toml"});
+  launch.arguments.insert(launch.arguments.begin(), "new");
+  launch.in_child = [] { ::setenv("TMPDIR", "/nowhere/at/all", 1); };
+  const Finished refused = run_program(launch);
+  EXPECT_EQ(refused.exit_code, 4) << refused.err;
+  EXPECT_TRUE(refused.err.starts_with("/nowhere/at/all: error: cannot make a folder")) << refused.err;
+  EXPECT_TRUE(names_in(dir.path()).empty());
+}
+
 /// What a terminal shows while these lines are typed.
 std::string on_terminal(const Words& words, const std::string& typed, int& exit_code) {
   int master = -1;
@@ -280,19 +340,6 @@ TEST(New, FindsAMachineBesideTheJob) {
   EXPECT_EQ(made.exit_code, 0) << made.err;
   EXPECT_NE(made.out.find("\"travels needed\":\"X "), std::string::npos) << made.out;
   expect_runs(dir / "job.toml", "run", dir);
-}
-
-constexpr const char* kFusion = R"({"version": 36, "data": [
- {"type": "ball end mill", "description": "1 mm ball", "unit": "millimeters", "post-process": {"number": 4},
-  "geometry": {"DC": 1, "LCF": 7, "LB": 27, "SFDM": 4, "NOF": 2, "assemblyGaugeLength": 97},
-  "holder": {"description": "ER11", "gaugeLength": 70, "segments": [{"height": 30, "lower-diameter": 11, "upper-diameter": 11}]}},
- {"type": "drill", "unit": "millimeters", "post-process": {"number": 8}, "geometry": {"DC": 5}}]})";
-
-/// A spur gear with these tools.
-Words with_tools(const std::string& file, Words more = {}) {
-  Words words = gear("face", "ball", "xyzac_large", {"--teeth", "60", "--module", "2", "--tools", file});
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
 }
 
 TEST(New, TakesTheToolsOfAFusionLibrary) {

@@ -3,7 +3,10 @@
 
 #include <sys/stat.h>
 
+#include <map>
+
 #include "geometry/base/hash.h"
+#include "geometry/mesh/file.h"
 #include "machines/toml/regular_file.h"
 #include "tests/app/program.h"
 
@@ -51,7 +54,7 @@ TEST(OutputDir, ASymbolicLinkIsReplacedNotFollowed) {
   std::filesystem::create_directories(dir / "out");
   write_file(dir / "elsewhere", "mine");
   std::filesystem::create_symlink(dir / "elsewhere", dir / "out/a.txt");
-  auto output = app::OutputDir::open(dir / "out", {});
+  auto output = app::OutputDir::open(dir / "out", {"a.txt"});
   ASSERT_TRUE(output.has_value());
   ASSERT_TRUE(output->write("a.txt", "ours").has_value());
   ASSERT_TRUE(output->commit().has_value());
@@ -201,6 +204,22 @@ TEST(OutputDir, AnInputReadMeanwhileIsNotReplaced) {
   EXPECT_NE(file_text(out + "/report.json"), "new");
 }
 
+// Whatever reads it: a mesh that a machine file names is an input like a job.
+TEST(OutputDir, AMeshReadMeanwhileIsNotReplaced) {
+  const TestDir dir;
+  std::filesystem::create_directories(dir / "out");
+  write_file(dir / "out/gear.stl", "mine");
+  auto output = app::OutputDir::open(dir / "out", {"gear.stl"});
+  ASSERT_TRUE(output && output->keeps_inputs());
+  EXPECT_FALSE(mesh::load_mesh(dir / "out/../out/gear.stl"));  // were it no mesh
+  const Status refused = output->keeps_inputs();
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, DiagnosticKind::usage);
+  ASSERT_TRUE(output->write("gear.stl", "new"));
+  EXPECT_FALSE(output->commit());
+  EXPECT_EQ(file_text(dir / "out/gear.stl"), "mine");
+}
+
 TEST(OutputDir, ProgramsGetTheirNamesLast) {
   const TestDir dir;
   auto output = app::OutputDir::open(dir / "out", kRun);
@@ -208,6 +227,133 @@ TEST(OutputDir, ProgramsGetTheirNamesLast) {
   std::filesystem::create_directories(dir / "out/report.json/occupied");
   ASSERT_FALSE(output->commit());
   EXPECT_EQ(names_in(dir / "out"), std::vector<std::string>{"report.json"});
+}
+
+/// Every file, link and folder below a directory with its bytes or where it leads.
+std::map<std::string, std::string> tree(const std::string& directory) {
+  namespace fs = std::filesystem;
+  std::map<std::string, std::string> all;
+  for (const auto& entry : fs::recursive_directory_iterator(directory))
+    all[fs::relative(entry.path(), directory)] = entry.is_symlink()        ? "-> " + fs::read_symlink(entry).string()
+                                                 : entry.is_directory()    ? "folder"
+                                                 : entry.is_regular_file() ? file_text(entry.path())
+                                                                           : "other";
+  return all;
+}
+
+/// A run in DIR from its beginning to its end, as far as it comes.
+Status whole_run(const std::string& directory) {
+  auto output = app::OutputDir::open(directory, kRun, {}, app::kPrevious);
+  if (!output) return output.error();
+  if (auto s = output->set_aside(); !s) return s;
+  if (auto s = output->write("program.ngc", "new"); !s) return s;
+  return output->commit();
+}
+
+// DIR may have come out of somebody's archive: whatever stands there, nothing outside is written, moved or removed, and
+// of what is inside no file of somebody else.
+TEST(OutputDir, NothingOutsideIsTouchedWhateverStandsThere) {
+  namespace fs = std::filesystem;
+  const std::string marks[] = {".toothpath-journal",
+                               ".toothpath-done",
+                               ".toothpath-aside",
+                               ".toothpath-older-previous",
+                               ".toothpath-kept-previous",
+                               ".toothpath-lock",
+                               "previous",
+                               "program.ngc",
+                               "report.json",
+                               ".toothpath-999999999-program.ngc",
+                               ".toothpath-999999999-gone",
+                               fmt::format(".toothpath-{}-program.ngc", ::getpid()),
+                               fmt::format(".toothpath-{}-journal", ::getpid())};
+  const std::string kinds[] = {"file link", "folder link", "dangling link", "loop", "folder", "pipe", "hard link"};
+  for (const std::string& mark : marks)
+    for (const std::string& kind : kinds)
+      for (const bool old_results : {false, true}) {
+        SCOPED_TRACE(mark + " as " + kind + (old_results ? " above old results" : ""));
+        const TestDir dir;
+        const std::string out = dir / "out", outside = dir / "outside", at = out + "/" + mark;
+        fs::create_directories(outside + "/victims/below");
+        for (const char* name : {"/victim.txt", "/victims/program.ngc", "/victims/report.json", "/victims/thesis.txt",
+                                 "/victims/below/report.json"})
+          write_file(outside + name, "mine");
+        fs::create_directories(out);
+        write_file(out + "/my notes.txt", "mine");
+        if (old_results) write_file(out + "/program.ngc", "G1");
+        fs::remove(at);
+        if (kind == "file link") fs::create_symlink(outside + "/victim.txt", at);
+        else if (kind == "folder link") fs::create_directory_symlink("../outside/victims", at);
+        else if (kind == "dangling link") fs::create_symlink(outside + "/not yet", at);
+        else if (kind == "loop") fs::create_symlink(mark, at);
+        else if (kind == "folder") fs::create_directories(at + "/my folder");
+        else if (kind == "hard link") fs::create_hard_link(outside + "/victim.txt", at);
+        else ASSERT_EQ(::mkfifo(at.c_str(), 0600), 0);
+        const auto before = tree(outside);
+        for (int k = 0; k < 2; ++k) {
+          if (const Status ran = whole_run(out); !ran) {
+            EXPECT_EQ(ran.error().kind, DiagnosticKind::file_access);
+            EXPECT_TRUE(ran.error().position.file.starts_with(out)) << ran.error().text();
+          }
+          EXPECT_EQ(tree(outside), before);
+          EXPECT_EQ(file_text(out + "/my notes.txt"), "mine");
+        }
+      }
+}
+
+TEST(OutputDir, AJournalNamesOutputsOfTheCommandOnly) {
+  for (const char* name : {"../outside/victim.txt", "my notes.txt", "..", ".", "", "below/thesis.txt", "program.ngc/",
+                           "./report.json", "../out/report.json"}) {
+    const TestDir dir;
+    const std::string out = finished_run(dir);
+    std::filesystem::create_directories(dir / "outside");
+    std::filesystem::create_directories(out + "/below");
+    write_file(dir / "outside/victim.txt", "mine");
+    write_file(out + "/below/thesis.txt", "mine");
+    for (const std::string& journal : {std::string(name) + "\n", "report.json\n" + std::string(name) + "\n"}) {
+      write_file(out + "/.toothpath-journal", journal);
+      const auto before = tree(dir.path());
+      const Status ran = whole_run(out);
+      ASSERT_FALSE(ran) << name;
+      EXPECT_EQ(ran.error().kind, DiagnosticKind::file_access);
+      EXPECT_EQ(ran.error().position.file, out + "/.toothpath-journal");
+      EXPECT_EQ(ran.error().position.line, std::count(journal.begin(), journal.end(), '\n'));
+      EXPECT_EQ(tree(dir.path()), before);
+    }
+  }
+}
+
+TEST(OutputDir, WhatIsNotOursStaysInHiddenFolders) {
+  for (const char* folder :
+       {".toothpath-done", ".toothpath-older-previous", ".toothpath-kept-previous", ".toothpath-aside"}) {
+    SCOPED_TRACE(folder);
+    const TestDir dir;
+    const std::string out = finished_run(dir), hidden = out + "/" + folder;
+    std::filesystem::create_directories(hidden + "/my folder");
+    std::filesystem::create_directories(out + "/previous");
+    for (const std::string& place :
+         {hidden + "/thesis.txt", hidden + "/my folder/thesis.txt", out + "/previous/thesis.txt"})
+      write_file(place, "mine");
+    for (int k = 0; k < 2; ++k) (void)whole_run(out).has_value();
+    const auto all = tree(out);
+    EXPECT_EQ(std::count_if(all.begin(), all.end(), [](const auto& one) { return one.second == "mine"; }), 4);
+  }
+}
+
+TEST(OutputDir, AFolderBelowIsNoLink) {
+  const TestDir dir;
+  std::filesystem::create_directories(dir / "elsewhere");
+  std::filesystem::create_directories(dir / "out");
+  std::filesystem::create_directory_symlink(dir / "elsewhere", dir / "out/.own");
+  const auto refused = app::OutputDir::open_below(dir / "out", ".own", kRun);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().position.file, dir / "out/.own");
+  {
+    auto output = app::OutputDir::open_below(dir / "other", ".own", kRun);
+    ASSERT_TRUE(output && output->write("program.ngc", "G1"));
+    EXPECT_EQ(output->final_path("program.ngc"), dir / "other/.own/program.ngc");
+  }
+  EXPECT_FALSE(std::filesystem::exists(dir / "other"));
 }
 
 // FIPS 180-4: one block, two blocks, and a million letters.

@@ -67,27 +67,29 @@ void operator delete(void* place, std::size_t) noexcept { std::free(place); }
 void operator delete[](void* place, std::size_t) noexcept { std::free(place); }
 
 extern "C" {
-int __real_open(const char*, int, ...);
+int __real_openat(int, const char*, int, ...);
 ssize_t __real_write(int, const void*, size_t);
 int __real_fsync(int);
 int __real_close(int);
-int __real_rename(const char*, const char*);
-int __real_mkdir(const char*, mode_t);
-int __real_rmdir(const char*);
-int __real_unlink(const char*);
+int __real_renameat(int, const char*, int, const char*);
+int __real_mkdirat(int, const char*, mode_t);
+int __real_unlinkat(int, const char*, int);
 int __real_flock(int, int);
 
-int __wrap_mkdir(const char* path, mode_t mode) { return hit() ? -1 : __real_mkdir(path, mode); }
-int __wrap_rmdir(const char* path) { return hit() ? -1 : __real_rmdir(path); }
-int __wrap_unlink(const char* path) { return hit() ? -1 : __real_unlink(path); }
+int __wrap_mkdirat(int folder, const char* name, mode_t mode) {
+  return hit() ? -1 : __real_mkdirat(folder, name, mode);
+}
+int __wrap_unlinkat(int folder, const char* name, int flags) {
+  return hit() ? -1 : __real_unlinkat(folder, name, flags);
+}
 int __wrap_flock(int descriptor, int operation) { return hit() ? -1 : __real_flock(descriptor, operation); }
 
-int __wrap_open(const char* path, int flags, ...) {
+int __wrap_openat(int folder, const char* name, int flags, ...) {
   va_list values;
   va_start(values, flags);
   const mode_t mode = (flags & O_CREAT) != 0 ? va_arg(values, mode_t) : 0;
   va_end(values);
-  return (flags & O_CREAT) != 0 && hit() ? -1 : __real_open(path, flags, mode);
+  return (flags & O_CREAT) != 0 && hit() ? -1 : __real_openat(folder, name, flags, mode);
 }
 ssize_t __wrap_write(int descriptor, const void* bytes, size_t size) {
   if (!hit()) return __real_write(descriptor, bytes, size);
@@ -103,12 +105,12 @@ int __wrap_close(int descriptor) {
   errno = fault.error;
   return -1;
 }
-int __wrap_rename(const char* from, const char* to) {
+int __wrap_renameat(int folder, const char* from, int other, const char* to) {
   if (hit()) return -1;
-  const int result = __real_rename(from, to);
+  const int result = __real_renameat(folder, from, other, to);
   if (fault.armed && fault.damage && ++fault.seen == fault.at && result == 0) {
     fault.fired = true;
-    const int descriptor = __real_open(to, O_WRONLY, 0);
+    const int descriptor = __real_openat(other, to, O_WRONLY, 0);
     (void)!::pwrite(descriptor, "!", 1, 7);
     __real_close(descriptor);
   }

@@ -37,6 +37,7 @@ struct Launch {
   bool with_progress = false;
   std::string signal_when;  ///< instead: when this file or folder is there (at most a minute is waited)
   std::function<void()> before_signal = [] {};
+  std::function<void()> in_child = [] {};  ///< before the program begins: its environment, its directory
 };
 
 inline Finished run_program(const Launch& launch) {
@@ -61,6 +62,7 @@ inline Finished run_program(const Launch& launch) {
       const rlimit limit{launch.address_space, launch.address_space};
       ::setrlimit(RLIMIT_AS, &limit);
     }
+    launch.in_child();
     ::execv(argv[0], argv.data());
     ::_exit(127);
   }

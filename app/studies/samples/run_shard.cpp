@@ -1,7 +1,6 @@
 #include "app/studies/samples/run_shard.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "geometry/base/hash.h"
 #include "geometry/base/work_share.h"
@@ -17,10 +16,8 @@ constexpr std::size_t kMostInput = std::size_t(1) << 30;
 std::string key_of(const std::vector<std::string>& parts) {
   Sha256 hash;
   for (const std::string& part : parts) hash.add(part);
-  for (const std::string& path : toml::inputs_read()) {
-    if (path.ends_with(".jsonl")) continue;
+  for (const std::string& path : inputs_read())
     if (const auto text = toml::read_input_file(path, kMostInput)) hash.add(sha256_hex(*text));
-  }
   return hash.hex();
 }
 
@@ -30,9 +27,6 @@ std::string RanShard::summary() const {
 
 Result<RanShard> run_shard(const std::string& directory, const Shard& shard, const Head& head,
                            const std::function<Result<std::string>(int)>& line) {
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) return fail_as(DiagnosticKind::file_access, "{}: cannot be made: {}", directory, error.message());
   auto file = SampleFile::open(directory, shard, head);
   if (!file) return file.error();
   std::vector<int> wanted;
