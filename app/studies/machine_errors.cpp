@@ -10,6 +10,7 @@
 #include "app/studies/errors/head.h"
 #include "app/studies/merge.h"
 #include "app/studies/samples/run_shard.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::studies {
 namespace {
@@ -39,8 +40,8 @@ samples::Head head_of(const MachineErrorsRequest& request, const Study& study) {
   head["verified"] = study.run.report.verified;
   head["nominal"] = errors::json_of(study.flanks->nominal());
   head["errors"] = errors::json_of(study.errors);
-  head["key"] = samples::key_of({head.dump(), study.run.program_text});
-  return {errors::kStudy, head["samples"], head.dump(-1, ' ', false, Json::error_handler_t::replace)};
+  head["key"] = samples::key_of({json_text(head), study.run.program_text});
+  return {errors::kStudy, head["samples"], json_text(head), errors::kVersion};
 }
 
 /// Job, machine, errors, program; the gear beside its nominal flanks. Nothing: done.
@@ -77,7 +78,7 @@ Result<std::string> sample_line(Study& study, int sample, int seed) {
             {"tooth", tooth},
             {"magnitude", drawn.magnitude}};
   json.update(errors::json_of(*cost));
-  return json.dump();
+  return json_text(json);
 }
 
 }  // namespace
@@ -89,8 +90,8 @@ commands::CommandOutcome study_machine_errors(const MachineErrorsRequest& reques
   {
     Study study(request.quiet);
     // Shards share a directory: each plans in a folder of its own.
-    auto scratch = app::OutputDir::open(fmt::format("{}/.shard{}of{}", request.out_dir, shard->number, shard->count),
-                                        {"program."}, {request.job_file});
+    auto scratch = app::OutputDir::open_below(request.out_dir, fmt::format(".shard{}of{}", shard->number, shard->count),
+                                              {"program."}, {request.job_file});
     if (!scratch) return commands::failed(scratch.error());
     if (auto errors = begin(request, study, *scratch); !errors.empty()) {
       study.run.progress.clear();

@@ -35,11 +35,12 @@ Result<Summary> dhfg(const samples::Merged& merged) {
 
 struct Study {
   const char* name;
+  int version;
   const std::vector<std::string>& files;
   Result<Summary> (*summary)(const samples::Merged&);
 };
-const Study kStudies[] = {{errors::kStudy, errors::kSummaryFiles, machine_errors},
-                          {trials::kDhfg, trials::kDhfgFiles, dhfg}};
+const Study kStudies[] = {{errors::kStudy, errors::kVersion, errors::kSummaryFiles, machine_errors},
+                          {trials::kDhfg, trials::kDhfgVersion, trials::kDhfgFiles, dhfg}};
 
 }  // namespace
 
@@ -49,8 +50,13 @@ commands::CommandOutcome study_merge(const MergeRequest& request) {
   const auto* study = std::find_if(std::begin(kStudies), std::end(kStudies),
                                    [&](const Study& s) { return s.name == merged->head.study; });
   if (study == std::end(kStudies))
-    return commands::failed(fail("{}: study \"{}\" is not known; known: {}, {}", request.directory, merged->head.study,
-                                 errors::kStudy, trials::kDhfg));
+    return commands::failed(fail_at(merged->head_place, "study \"{}\" is not known; known: {}, {}", merged->head.study,
+                                    errors::kStudy, trials::kDhfg));
+  if (merged->head.version != study->version)
+    return commands::failed(fail_at(merged->head_place,
+                                    "version = {} of study {}, and this program has version {}: merge with the program "
+                                    "that ran the shards, or run them again with this one",
+                                    merged->head.version, study->name, study->version));
   auto summary = study->summary(*merged);
   if (!summary) return commands::failed(summary.error());
   std::vector<std::string> names = study->files;

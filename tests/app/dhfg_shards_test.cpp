@@ -88,14 +88,31 @@ TEST(StudyDhfg, InShardsAndAfterAKillTheSameAsInOnePiece) {
   for (const std::string& name : kDhfgMerged)
     EXPECT_EQ(file_text(one + "/" + name), file_text(cut + "/" + name)) << name;
 
+  // Levels point into lists: they must be those of the trial.
+  const std::string samples = file_text(cut + "/samples.jsonl");
+  const auto merged_as = [&](const std::string& from, const std::string& to) {
+    write_file(one + "/samples.1of1.jsonl", replaced(samples, from, to));
+    const auto refused = run_program({"study", "merge", one});
+    EXPECT_EQ(refused.exit_code, 3);
+    return refused.err;
+  };
+  EXPECT_NE(merged_as("\"teeth\":0}", "\"teeth\":7}").find("samples.1of1.jsonl:2:1: error: \"found.levels\" are not"),
+            std::string::npos);
+  EXPECT_NE(merged_as("\"version\":1", "\"version\":2")
+                .find("samples.1of1.jsonl:1:1: error: version = 2 of study dhfg, and this program has version 1"),
+            std::string::npos);
+
   write_file(file, replaced(kSmallStudy, "half_face = 6.0", "half_face = 6.5"));
   const auto other = run_program(dhfg_of(file, cut, "2/3"));
   EXPECT_EQ(other.exit_code, 3);
   EXPECT_NE(other.err.find("this file is of another study (they differ in: key)"), std::string::npos) << other.err;
 }
 
-samples::Merged merged_of(const std::string& facts, std::vector<std::string> lines, int count) {
-  return {{trials::kDhfg, count, R"({"facts":)" + facts + "}"}, std::move(lines), ""};
+samples::Merged merged_of(const std::string& facts, const std::vector<std::string>& lines, int count) {
+  samples::Merged merged{
+      {trials::kDhfg, count, R"({"facts":)" + facts + "}", trials::kDhfgVersion}, {"a.jsonl", 1, 1}, {}, ""};
+  for (const auto& line : lines) merged.lines.push_back({line, {"a.jsonl", int(merged.lines.size()) + 2, 1}});
+  return merged;
 }
 
 TEST(StudyDhfg, SamplesThatItDoesNotWriteAreRefused) {
@@ -107,13 +124,29 @@ TEST(StudyDhfg, SamplesThatItDoesNotWriteAreRefused) {
   const auto message = [](const samples::Merged& merged) {
     const auto study = trials::study_of(merged);
     EXPECT_FALSE(study);
-    return study ? "" : study.error().message;
+    return study ? "" : study.error().text();
   };
-  EXPECT_NE(message(merged_of("{}", {}, 0)).find("'name' not found"), std::string::npos);
-  EXPECT_NE(message(merged_of(facts, {}, 8)).find("the facts of the study make 9"), std::string::npos);
-  EXPECT_NE(message(merged_of(facts, nine, 9)).find("'levels' not found"), std::string::npos);
-  EXPECT_NE(message(merged_of(replaced(facts, "[6,8,10]", "[6,8]"), nine, 9)).find("2 levels of a factor, not 3"),
-            std::string::npos);
+  const auto head = [&](const std::string& from, const std::string& to, int count) {
+    return message(merged_of(replaced(facts, from, to), nine, count));
+  };
+  const std::string at = "a.jsonl:1:1: error: ";
+  EXPECT_TRUE(message(merged_of("{}", {}, 0)).starts_with(at + "\"facts.equal_half_mm\" is missing:"));
+  EXPECT_TRUE(message(merged_of(facts, {}, 8)).starts_with(at + "\"samples\" = 8, and the facts of the study make 9"));
+  EXPECT_TRUE(head("\"efforts\":0", "\"efforts\":-5", 9).starts_with(at + "\"facts.efforts\" = -5 of 9 samples"));
+  EXPECT_TRUE(head("\"efforts\":0", "\"efforts\":2147483647", 9).starts_with(at + "\"facts.efforts\" = 2147483647"));
+  EXPECT_TRUE(head("\"efforts\":0", "\"efforts\":1e9", 9)
+                  .starts_with(at + "\"facts.efforts\" is number; a whole number that fits 32 bits is needed"));
+  EXPECT_TRUE(head("[6,8,10]", "[6,8]", 9).starts_with(at + "\"facts.ratio\" has 2 entries, not 3"));
+  EXPECT_TRUE(head("\"torque_nmm\":1", "\"torque_nmm\":\"1\"", 9)
+                  .starts_with(at + "\"facts.torque_nmm\" is string; a number is needed"));
+
+  const auto line = [&](const std::string& text) {
+    std::vector<std::string> lines = nine;
+    lines[0] = text;
+    return message(merged_of(facts, lines, 9));
+  };
+  EXPECT_TRUE(message(merged_of(facts, nine, 9)).starts_with("a.jsonl:2:1: error: \"found.R1_mm\" is missing:"));
+  EXPECT_TRUE(line("{}").starts_with("a.jsonl:2:1: error: \"found\" is missing"));
 }
 
 }  // namespace

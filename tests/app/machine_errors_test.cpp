@@ -348,5 +348,54 @@ TEST(StudyMachineErrors, RefusesAnotherStudyAndWrongWords) {
   EXPECT_TRUE(names_in(dir / "a").empty());
 }
 
+/// Lines as the study writes them: one error and all together, two samples of each.
+std::string small_study() {
+  std::string text =
+      R"({"study":"machine-errors","version":1,"key":"abc","samples":4,"seed":1,"job":"j","machine":"m","teeth":60,)"
+      R"("fine":false,"verified":true,"nominal":{"shift_um":0,"rms_um":0,"deepest_um":1.0,"left_um":2.0,"gouge_um":0.5,)"
+      R"("gouge_bound_um":0.6,"within":true},"errors":[{"error":"A.pivot","size":1.0,"unit":"um","source":"assumed",)"
+      R"("meaning":"x"}]})"
+      "\n";
+  for (int k = 0; k < 4; ++k)
+    text += fmt::format(
+        R"({{"sample":{},"error":"{}","tooth":{},"magnitude":1.5,"shift_um":1.0,"rms_um":0.5,"deepest_um":1.0,)"
+        R"("left_um":1.0,"gouge_um":1.0,"gouge_bound_um":1.0,"within":true}})"
+        "\n",
+        k, k % 2 == 0 ? "A.pivot" : "all together", k);
+  return text;
+}
+
+TEST(StudyMachineErrors, DamagedSamplesAreRefusedWithTheirPlace) {
+  const TestDir dir;
+  const auto merged = [&](const std::string& text) {
+    write_file(dir / "samples.1of1.jsonl", text);
+    return run_program({"study", "merge", dir.path()});
+  };
+  EXPECT_EQ(merged(small_study()).exit_code, 0);
+  struct Case {
+    std::string from, to, place, says;
+  };
+  const std::string sample = "\"sample\":2,\"error\":\"A.pivot\"";
+  for (const Case& c :
+       {Case{"\"version\":1", "\"version\":2", "1:1", "version = 2 of study machine-errors, and this program has"},
+        Case{"\"version\":1,", "", "1:1", "not the head of a study"},
+        Case{"\"seed\":1", "\"seed\":\"one\"", "1:1", "\"seed\" is string; a whole number"},
+        Case{"\"left_um\":2.0,", "", "1:1", "\"nominal.left_um\" is missing"},
+        Case{"\"size\":1.0,", "", "1:1", "\"errors[0].size\" is missing"},
+        Case{"\"errors\":[{", "\"errors\":[{},{", "1:1", "\"errors[0].error\" is missing"},
+        Case{sample, "\"sample\":2,\"error\":7", "4:1", "\"error\" is number; a text is needed"},
+        Case{sample, "\"sample\":2,\"error\":\"B.pivot\"", "4:1", "\"error\" of sample 2 is not \"A.pivot\""},
+        Case{"\"magnitude\":1.5,\"shift_um\":1.0", "\"magnitude\":1.5,\"shift_um\":1e300", "2:1",
+             "\"shift_um\" = 1e+300 is beyond 1e+12"},
+        Case{"\"magnitude\":1.5,\"shift_um\":1.0", "\"magnitude\":1.5,\"shift_um\":\"x\"", "2:1",
+             "\"shift_um\" is string; a number is needed"}}) {
+    const auto refused = merged(replaced(small_study(), c.from, c.to));
+    EXPECT_EQ(refused.exit_code, 3) << c.to;
+    EXPECT_NE(refused.err.find(dir / "samples.1of1.jsonl" + ":" + c.place + ": error: " + c.says), std::string::npos)
+        << refused.err;
+    EXPECT_EQ(refused.err.find("json.exception"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace toothpath::test

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
 
 #include "app/studies/samples/counter.h"
 #include "app/studies/samples/sample_file.h"
@@ -195,6 +196,42 @@ TEST(Samples, LinesThatAreNone) {
   const auto file = SampleFile::open(dir.path(), {1, 2}, head_of(2));
   ASSERT_FALSE(file);
   EXPECT_NE(file.error().text().find(":2:1: error: sample 1 is not of shard 1/2"), std::string::npos);
+}
+
+// A shard is added to where it stands: never to a file outside the directory, nor to somebody else's.
+TEST(Samples, WhatIsNotOfThisStudyKeepsItsBytes) {
+  namespace fs = std::filesystem;
+  const std::string ours = head_of(4).line + "\n" + line(0) + "\n{\"sam";
+  for (const std::string& foreign :
+       {std::string("my notes, without an end"), std::string("my notes\nand a last line"), std::string("\n"),
+        head_of(4, "other").line + "\n{\"sam", head_of(4, "other").line, head_of(4).line + "\n" + line(7) + "\n{\"sam",
+        head_of(4).line + "\nmy notes\nlast", ours})
+    for (const std::string kind : {"file", "link", "hard link"}) {
+      if (kind == "file" && foreign == ours) continue;
+      const TestDir dir, outside;
+      const std::string path = dir / "samples.1of1.jsonl", target = outside / "victim";
+      write_file(kind == "file" ? path : target, foreign);
+      if (kind == "link") fs::create_symlink(target, path);
+      if (kind == "hard link") fs::create_hard_link(target, path);
+      const auto file = SampleFile::open(dir.path(), {1, 1}, head_of(4));
+      ASSERT_FALSE(file) << kind << ": " << foreign;
+      EXPECT_NE(file.error().text().find(path), std::string::npos) << file.error().text();
+      EXPECT_EQ(file_text(kind == "file" ? path : target), foreign) << kind;
+    }
+  const TestDir dir, outside;  // a link to a file that is not there makes none
+  fs::create_symlink(outside / "not yet", dir / "samples.1of1.jsonl");
+  EXPECT_FALSE(SampleFile::open(dir.path(), {1, 1}, head_of(4)));
+  EXPECT_FALSE(fs::exists(outside / "not yet"));
+}
+
+TEST(Samples, AHeadHasItsKeys) {
+  for (const char* head :
+       {R"({"study":"s","key":"k","samples":2})", R"({"study":"s","version":"1","key":"k","samples":2})",
+        R"({"study":"s","version":1,"key":3,"samples":2})", R"({"study":"s","version":1,"samples":2})",
+        R"({"study":"s","version":0,"key":"k","samples":2})",
+        R"({"study":"s","version":1,"key":"k","samples":18446744073709551615})"})
+    EXPECT_FALSE(read_head(head)) << head;
+  EXPECT_EQ(read_head(R"({"study":"s","version":3,"key":"k","samples":2})")->version, 3);
 }
 
 TEST(Samples, OneProcessAShard) {

@@ -3,15 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "app/report/page/study_page.h"
 #include "app/report/svg/plot.h"
 #include "app/studies/errors/head.h"
+#include "app/studies/samples/shape.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::errors {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr double kMost = 1e12;  // um, urad
 
 /// One row of the table: an error alone, or all together.
 struct Row {
@@ -47,20 +52,62 @@ struct Row {
 
 std::string number(double value, const char* format) { return fmt::format(fmt::runtime(format), value); }
 
-std::vector<Row> rows_of(const Json& head, const std::vector<std::string>& lines) {
+Diagnostic refused(const SourcePosition& place, const std::string& fault) {
+  return fail_at(place, "{}: study machine-errors does not write this; take the file away and run its shard again",
+                 fault);
+}
+
+/// The first number of a cost or a size that no flank has; empty: none.
+std::string beyond(const Json& numbers) {
+  for (const auto& [key, value] : numbers.items())
+    if (value.is_number() && std::abs(value.get<double>()) > kMost)
+      return fmt::format("\"{}\" = {:g} is beyond {:g}", key, value.get<double>(), kMost);
+  return {};
+}
+
+Status check_head(const Json& head, const SourcePosition& place) {
+  const Json model{{"key", ""},
+                   {"samples", 0},
+                   {"seed", 0},
+                   {"job", ""},
+                   {"machine", ""},
+                   {"teeth", 0},
+                   {"verified", false},
+                   {"nominal", json_of(Cost())},
+                   {"errors", json_of(std::vector{Error()})}};
+  std::string fault = samples::shape_fault(model, head, "");
+  if (fault.empty()) fault = beyond(head["nominal"]);
+  for (std::size_t k = 0; fault.empty() && k < head["errors"].size(); ++k) fault = beyond(head["errors"][k]);
+  return fault.empty() ? Status(Ok{}) : refused(place, fault);
+}
+
+Result<std::vector<Row>> rows_of(const Json& head, const samples::Merged& merged) {
   std::vector<Row> rows;
-  for (const auto& e : head.at("errors"))
-    rows.push_back({e.at("error"), e.at("unit"), e.at("source"), e.at("meaning"), e.at("size")});
+  for (const auto& e : head["errors"]) rows.push_back({e["error"], e["unit"], e["source"], e["meaning"], e["size"]});
   rows.push_back({kAll, "", "", "every error at once", 0});
-  for (const std::string& line : lines) {
-    const Json sample = Json::parse(line);
-    Row& row = rows[sample.at("sample").get<std::size_t>() % rows.size()];
-    row.magnitude.push_back(sample.at("magnitude"));
-    row.shift_um.push_back(sample.at("shift_um"));
-    row.deepest_um = std::max(row.deepest_um, sample.at("deepest_um").get<double>());
-    row.left_um = std::max(row.left_um, sample.at("left_um").get<double>());
-    row.within += sample.at("within").get<bool>() ? 1 : 0;
+  Json model{{"error", ""}, {"magnitude", 0.0}};
+  model.update(json_of(Cost()));
+  std::optional<Diagnostic> misnamed;
+  for (std::size_t k = 0; k < merged.lines.size(); ++k) {
+    const auto& [text, place] = merged.lines[k];
+    const Json sample = Json::parse(text, nullptr, false);
+    Row& row = rows[k % rows.size()];
+    std::string fault = samples::shape_fault(model, sample, "");
+    if (fault.empty()) fault = beyond(sample);
+    if (!fault.empty()) return refused(place, fault);
+    if (!misnamed && sample["error"] != row.name)
+      misnamed = refused(place, fmt::format("\"error\" of sample {} is not \"{}\"", k, row.name));
+    row.magnitude.push_back(sample["magnitude"]);
+    row.shift_um.push_back(sample["shift_um"]);
+    row.deepest_um = std::max(row.deepest_um, sample["deepest_um"].get<double>());
+    row.left_um = std::max(row.left_um, sample["left_um"].get<double>());
+    row.within += sample["within"].get<bool>() ? 1 : 0;
   }
+  if (misnamed) return *misnamed;
+  for (const Row& row : rows)
+    if (row.shift_um.empty())
+      return refused(merged.head_place,
+                     fmt::format("\"samples\" = {} leaves {} without one", merged.head.samples, row.name));
   return rows;
 }
 
@@ -157,23 +204,19 @@ page::StudyPage page_of(const Json& head, const std::vector<Row>& rows, const pa
 }  // namespace
 
 Result<Summary> summary_of(const samples::Merged& samples) {
-  try {
-    const Json head = Json::parse(samples.head.line);
-    const std::vector<Row> rows = rows_of(head, samples.lines);
-    for (const Row& row : rows)
-      if (row.shift_um.empty()) return fail("samples = {} leaves {} without one", samples.head.samples, row.name);
-    const page::PageTable table = table_of(rows);
-    Summary out;
-    out.json = json_of(head, rows).dump(2) + "\n";
-    const page::StudyPage page = page_of(head, rows, table);
-    out.files = {{kSummaryFiles[0], page::table_csv(table)},
-                 {kSummaryFiles[1], out.json},
-                 {kSummaryFiles[2], page::study_page_html(page)}};
-    out.text = page::table_text(page.tables.front()) + together(rows.back()) + "\n";
-    return out;
-  } catch (const nlohmann::json::exception& why) {
-    return fail("the samples lack what study machine-errors writes: {}", why.what());
-  }
+  const Json head = Json::parse(samples.head.line, nullptr, false);
+  if (const auto fits = check_head(head, samples.head_place); !fits) return fits.error();
+  const auto rows = rows_of(head, samples);
+  if (!rows) return rows.error();
+  const page::PageTable table = table_of(*rows);
+  Summary out;
+  out.json = json_text(json_of(head, *rows), 2) + "\n";
+  const page::StudyPage page = page_of(head, *rows, table);
+  out.files = {{kSummaryFiles[0], page::table_csv(table)},
+               {kSummaryFiles[1], out.json},
+               {kSummaryFiles[2], page::study_page_html(page)}};
+  out.text = page::table_text(page.tables.front()) + together(rows->back()) + "\n";
+  return out;
 }
 
 }  // namespace toothpath::errors

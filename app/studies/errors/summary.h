@@ -16,7 +16,7 @@ struct Summary {
 inline const std::vector<std::string> kSummaryFiles = {"machine_errors.csv", "machine_errors.json",
                                                        "machine_errors.html"};
 
-/// Errors: a head or a sample that lacks what this study writes; the message names the sample.
+/// Errors: a head or a sample that lacks what this study writes, with file and line.
 [[nodiscard]] Result<Summary> summary_of(const samples::Merged& samples);
 
 }  // namespace toothpath::errors

@@ -19,7 +19,6 @@ struct RanShard {
   std::size_t samples = 0, fresh = 0;         ///< that stand in the file now; that were computed
   [[nodiscard]] std::string summary() const;  ///< one line for the screen
 };
-/// Makes the directory where it does not exist.
 /// @param line  of sample k, a JSON object with "sample"
 /// Errors: those of SampleFile, and the first of `line`; what was computed before it stays.
 [[nodiscard]] Result<RanShard> run_shard(const std::string& directory, const Shard& shard, const Head& head,

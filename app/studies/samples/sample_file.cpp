@@ -1,6 +1,8 @@
 #include "app/studies/samples/sample_file.h"
 
+#include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,7 +20,7 @@ namespace {
 
 using Json = nlohmann::json;
 constexpr std::size_t kMostBytes = std::size_t(1) << 30;
-constexpr int kMostSamples = 100'000'000;
+constexpr int kMostSamples = 100'000'000, kMostVersion = 1000;
 
 Diagnostic not_accessible(const std::string& path, const char* what) {
   return fail_as(DiagnosticKind::file_access, "{}: {}: {}", path, what, std::strerror(errno));
@@ -108,51 +110,79 @@ Result<std::vector<std::string>> files_of(const std::string& directory) {
 
 Result<Head> read_head(const std::string& line) {
   const Json json = Json::parse(line, nullptr, false);
-  const bool whole = json.is_object() && json.contains("study") && json["study"].is_string() && json.contains("key") &&
-                     json.contains("samples") && json["samples"].is_number_integer();
-  if (!whole) return fail("not the head of a study: a JSON object with \"study\", \"key\" and \"samples\"");
-  const auto samples = json["samples"].get<std::int64_t>();
+  const auto has = [&](const char* key, bool (Json::*is)() const noexcept) {
+    return json.contains(key) && (json[key].*is)();
+  };
+  if (!json.is_object() || !has("study", &Json::is_string) || !has("version", &Json::is_number_integer) ||
+      !has("key", &Json::is_string) || !has("samples", &Json::is_number_integer))
+    return fail(
+        "not the head of a study: a JSON object with \"study\" and \"key\" (texts), \"version\" and \"samples\" (whole "
+        "numbers)");
+  const auto samples = json["samples"].get<std::int64_t>(), version = json["version"].get<std::int64_t>();
   if (samples < 1 || samples > kMostSamples) return fail("samples = {} is not within 1 to {}", samples, kMostSamples);
-  return Head{json["study"].get<std::string>(), int(samples), line};
+  if (version < 1 || version > kMostVersion) return fail("version = {} is not within 1 to {}", version, kMostVersion);
+  return Head{json["study"].get<std::string>(), int(samples), line, int(version)};
 }
 
-Result<SampleFile> SampleFile::open(const std::string& directory, const Shard& shard, const Head& head) {
-  SampleFile out;
-  out.path_ = (std::filesystem::path(directory) / shard.file_name()).string();
-  out.file_.reset(std::fopen(out.path_.c_str(), "a+b"));
-  if (!out.file_) return not_accessible(out.path_, "cannot be opened");
-  if (::flock(::fileno(out.file_.get()), LOCK_EX | LOCK_NB) != 0)
-    return fail_as(DiagnosticKind::file_access, "{}: another process is writing shard {}", out.path_, shard.text());
-  const auto text = toml::read_input_file(out.path_, kMostBytes);
-  if (!text) return text.error();
-  const std::vector<std::string> lines = whole_lines(*text);
+Status SampleFile::take_up(const std::string& text, const Shard& shard, const Head& head) {
+  const std::vector<std::string> lines = whole_lines(text);
   std::size_t kept = 0;
   for (const auto& line : lines) kept += line.size() + 1;
-  if (kept < text->size() && ::ftruncate(::fileno(out.file_.get()), off_t(kept)) != 0)
-    return not_accessible(out.path_, "a line that was cut off cannot be taken away");
-  if (lines.empty()) {
-    if (const auto begun = out.add(-1, head.line); !begun) return begun.error();
-    out.done_.clear();
-    return out;
-  }
-  if (lines.front() != head.line)
-    return other_study(out.path_, lines.front(), head.line, "choose another directory, or take the file away");
-  auto read = lines_of(out.path_, lines, head);
+  if (lines.empty() && !(head.line + '\n').starts_with(text))
+    return fail_at({path_, 1, 1}, "not the head of this study; choose another directory, or take the file away");
+  if (!lines.empty() && lines.front() != head.line)
+    return other_study(path_, lines.front(), head.line, "choose another directory, or take the file away");
+  auto read = lines_of(path_, lines, head);
   if (!read) return read.error();
   for (const Line& line : *read) {
     if (!shard.has(line.sample))
-      return fail_at({out.path_, line.number, 1}, "sample {} is not of shard {}", line.sample, shard.text());
-    out.done_.insert(line.sample);
+      return fail_at({path_, line.number, 1}, "sample {} is not of shard {}", line.sample, shard.text());
+    done_.insert(line.sample);
   }
+  if (kept < text.size() && ::ftruncate(::fileno(file_.get()), off_t(kept)) != 0)
+    return not_accessible(path_, "a line that was cut off cannot be taken away");
+  return lines.empty() ? write(head.line) : Ok{};
+}
+
+Result<SampleFile> SampleFile::open(const std::string& directory, const Shard& shard, const Head& head) {
+  std::vector<files::Folder::Made> made;
+  const auto folder = files::Folder::open_or_make(directory, made);
+  if (!folder) return folder.error();
+  const auto handle = folder->open_file(shard.file_name(), O_RDWR | O_CREAT | O_APPEND);
+  if (!handle) return handle.error();
+  SampleFile out;
+  out.path_ = folder->at(shard.file_name());
+  out.file_.reset(::fdopen(*handle, "a+b"));
+  if (!out.file_) {
+    ::close(*handle);
+    return not_accessible(out.path_, "cannot be opened");
+  }
+  if (::flock(*handle, LOCK_EX | LOCK_NB) != 0)
+    return fail_as(DiagnosticKind::file_access, "{}: another process is writing shard {}", out.path_, shard.text());
+  struct stat status {};
+  if (::fstat(*handle, &status) == 0 && status.st_nlink > 1)
+    return fail_as(
+        DiagnosticKind::file_access,
+        "{}: the file has {} names (hard links), and lines that are added would stand under all of them: put "
+        "a copy in its place",
+        out.path_, status.st_nlink);
+  const auto text = toml::read_regular_file(*handle, out.path_, kMostBytes);
+  if (!text) return text.error();
+  if (auto taken = out.take_up(*text, shard, head); !taken) return taken.error();
   return out;
 }
 
-Status SampleFile::add(int sample, const std::string& line) {
+Status SampleFile::write(const std::string& line) {
   const std::string text = line + '\n';
   if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() || std::fflush(file_.get()) != 0)
     return not_accessible(path_, "cannot be written");
-  done_.insert(sample);
   return Ok{};
+}
+
+Status SampleFile::add(int sample, const std::string& line) {
+  auto written = write(line);
+  if (written) done_.insert(sample);
+  return written;
 }
 
 Result<Merged> merge(const std::string& directory) {
@@ -171,6 +201,7 @@ Result<Merged> merge(const std::string& directory) {
     if (first.empty()) {
       first = path;
       merged.head = *head;
+      merged.head_place = {path, 1, 1};
     } else if (head->line != merged.head.line) {
       return other_study(path, head->line, merged.head.line,
                          ("than " + first + "; one directory holds one study").c_str());
@@ -196,7 +227,7 @@ Result<Merged> merge(const std::string& directory) {
   merged.text = merged.head.line + '\n';
   for (auto& [sample, found] : samples) {
     merged.text += found.first.text + '\n';
-    merged.lines.push_back(std::move(found.first.text));
+    merged.lines.push_back({std::move(found.first.text), {found.second, found.first.number, 1}});
   }
   return merged;
 }

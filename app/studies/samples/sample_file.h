@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "app/files/folder.h"
 #include "app/studies/samples/shard.h"
 #include "geometry/base/result.h"
 
@@ -21,6 +22,7 @@ struct Head {
   std::string study;
   int samples = 0;
   std::string line;  ///< without its line feed
+  int version = 0;   ///< of what a sample of this study means
 };
 /// Reads a head. Errors: no JSON object, or one without these keys.
 [[nodiscard]] Result<Head> read_head(const std::string& line);
@@ -28,9 +30,11 @@ struct Head {
 /// The file of one shard, open for more lines.
 class SampleFile {
  public:
-  /// Opens DIRECTORY/samples.IofN.jsonl, or begins it. Lines that are whole are kept; a last one that is cut off goes.
-  /// Errors: a head that is not this one, a line that is no sample of this shard (both with file and line); another
-  /// process that writes this shard; kind `file_access`.
+  /// Opens DIRECTORY/samples.IofN.jsonl, or begins it; the directory is made where it does not exist. Lines that are
+  /// whole are kept; a last one that is cut off goes, once all before it is known to be of this study.
+  /// Errors: a head that is not this one, a line that is no sample of this shard (both with file and line); kind
+  /// `file_access`: another process that writes this shard, a link in the place of the file, a file that has other
+  /// names (hard links). A file that is refused keeps its bytes.
   [[nodiscard]] static Result<SampleFile> open(const std::string& directory, const Shard& shard, const Head& head);
 
   [[nodiscard]] bool has(int sample) const { return done_.contains(sample); }
@@ -40,6 +44,8 @@ class SampleFile {
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
+  [[nodiscard]] Status take_up(const std::string& text, const Shard& shard, const Head& head);
+  [[nodiscard]] Status write(const std::string& line);
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
@@ -48,11 +54,16 @@ class SampleFile {
   std::set<int> done_;
 };
 
+struct PlacedLine {
+  std::string text;
+  SourcePosition place;
+};
 /// All samples of a study.
 struct Merged {
   Head head;
-  std::vector<std::string> lines;  ///< by sample
-  std::string text;                ///< head and lines: the same bytes however the study was cut
+  SourcePosition head_place;
+  std::vector<PlacedLine> lines;  ///< by sample
+  std::string text;               ///< head and lines: the same bytes however the study was cut
 };
 /// From all files samples.*.jsonl of the directory, however they were cut. Last lines that are cut off do not count.
 /// Errors, with file and line: files of different studies; lines that are no samples; two different results of one

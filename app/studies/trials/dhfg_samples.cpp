@@ -4,7 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/studies/samples/shape.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/json_text.h"
 
 namespace toothpath::contact {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MeshForce, normal_n, pinion_torque_nmm, pinion_axial_n, pinion_radial_n,
@@ -32,7 +34,6 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DhfgTrial, levels, pinion_teeth, teeth, helix
 namespace {
 
 using Json = nlohmann::json;
-constexpr int kVersion = 1;  // of what a sample means: another one, other samples
 constexpr int kPositions = 8, kQuickPositions = 4;
 
 enum class Kind { trial, equal_halves, effort };
@@ -50,6 +51,15 @@ Place place_of(const StudyFacts& facts, int k) {
   return index < trials ? Place{Kind::equal_halves, index} : Place{Kind::effort, index - trials};
 }
 
+/// Of sample k: "trial 4", "trial 4 with equal halves", "effort 2 of trial 4".
+std::string name_of(const StudyFacts& facts, int k) {
+  const auto [kind, index] = place_of(facts, k);
+  if (kind == Kind::effort) return fmt::format("effort {} of trial {}", index + 1, kMiddleTrial + 1);
+  return fmt::format("trial {}{}", l9_trials()[index].number, kind == Kind::trial ? "" : " with equal halves");
+}
+
+}  // namespace
+
 int count_of(const StudyFacts& facts) {
   return int(l9_trials().size()) * (facts.equal_half_mm > 0 ? 2 : 1) + facts.efforts;
 }
@@ -62,8 +72,6 @@ StudyFound room_for(const StudyFacts& facts) {
   found.efforts.resize(std::size_t(facts.efforts));
   return found;
 }
-
-}  // namespace
 
 DhfgSamples::DhfgSamples(DhfgStudy study, bool quick) : study_(std::move(study)) {
   facts_.name = study_.name;
@@ -85,15 +93,7 @@ DhfgSamples::DhfgSamples(DhfgStudy study, bool quick) : study_(std::move(study))
   if (middle_) facts_.efforts = int(effort_rows(study_.base.module_mm, quick).size());
 }
 
-int DhfgSamples::count() const { return count_of(facts_); }
-
-std::string DhfgSamples::name(int k) const {
-  const auto [kind, index] = place_of(facts_, k);
-  if (kind == Kind::effort) return fmt::format("effort {} of trial {}", index + 1, kMiddleTrial + 1);
-  return fmt::format("trial {}{}", l9_trials()[index].number, kind == Kind::trial ? "" : " with equal halves");
-}
-
-StudyFound DhfgSamples::room() const { return room_for(facts_); }
+std::string DhfgSamples::name(int k) const { return name_of(facts_, k); }
 
 void DhfgSamples::compute(int k, StudyFound& found) const {
   const auto [kind, index] = place_of(facts_, k);
@@ -108,39 +108,56 @@ void DhfgSamples::compute(int k, StudyFound& found) const {
   }
 }
 
-std::string DhfgSamples::line(int k, const StudyFound& found) const {
-  const auto [kind, index] = place_of(facts_, k);
+std::string sample_line(const StudyFacts& facts, int k, const StudyFound& found) {
+  const auto [kind, index] = place_of(facts, k);
   Json json = kind == Kind::trial          ? Json(found.trials[index])
               : kind == Kind::equal_halves ? Json(found.equal.trials[index])
                                            : Json(found.efforts[index]);
-  return Json{{"sample", k}, {"name", name(k)}, {"found", std::move(json)}}.dump();
+  return json_text(Json{{"sample", k}, {"name", name_of(facts, k)}, {"found", std::move(json)}});
 }
 
-samples::Head DhfgSamples::head(const std::string& inputs) const {
-  const Json json{{"study", kDhfg}, {"version", kVersion}, {"key", inputs}, {"samples", count()}, {"facts", facts_}};
-  return {kDhfg, count(), json.dump(-1, ' ', false, Json::error_handler_t::replace)};
+samples::Head head_of(const StudyFacts& facts, const std::string& inputs) {
+  const int count = count_of(facts);
+  const Json json{{"study", kDhfg}, {"version", kDhfgVersion}, {"key", inputs}, {"samples", count}, {"facts", facts}};
+  return {kDhfg, count, json_text(json), kDhfgVersion};
 }
 
 Result<MergedStudy> study_of(const samples::Merged& merged) {
-  try {
-    MergedStudy out;
-    out.facts = Json::parse(merged.head.line).at("facts").get<StudyFacts>();
-    for (const auto* levels : {&out.facts.pinion_teeth, &out.facts.ratio, &out.facts.helix_angle_rad})
-      if (levels->size() != 3) return fail("the head of study dhfg has {} levels of a factor, not 3", levels->size());
-    if (count_of(out.facts) != merged.head.samples)
-      return fail("samples = {}: the facts of the study make {}", merged.head.samples, count_of(out.facts));
-    out.found = room_for(out.facts);
-    for (int k = 0; k < merged.head.samples; ++k) {
-      const Json found = Json::parse(merged.lines[std::size_t(k)]).at("found");
-      const auto [kind, index] = place_of(out.facts, k);
-      if (kind == Kind::trial) found.get_to(out.found.trials[index]);
-      else if (kind == Kind::equal_halves) found.get_to(out.found.equal.trials[index]);
-      else found.get_to(out.found.efforts[index]);
-    }
-    return out;
-  } catch (const nlohmann::json::exception& why) {
-    return fail("the samples lack what study dhfg writes: {}", why.what());
+  const auto refused = [](const SourcePosition& place, const std::string& fault) {
+    return fail_at(place, "{}: study dhfg does not write this; take the file away and run its shard again", fault);
+  };
+  MergedStudy out;
+  const Json head = Json::parse(merged.head.line, nullptr, false);
+  const std::vector<double> levels(3);
+  StudyFacts facts;
+  facts.pinion_teeth = facts.ratio = facts.helix_angle_rad = levels;
+  if (const auto fault = samples::shape_fault(Json{{"facts", facts}}, head, ""); !fault.empty())
+    return refused(merged.head_place, fault);
+  out.facts = head["facts"].get<StudyFacts>();
+  if (out.facts.efforts < 0 || out.facts.efforts > merged.head.samples)
+    return refused(merged.head_place,
+                   fmt::format("\"facts.efforts\" = {} of {} samples", out.facts.efforts, merged.head.samples));
+  if (count_of(out.facts) != merged.head.samples)
+    return refused(merged.head_place, fmt::format("\"samples\" = {}, and the facts of the study make {}",
+                                                  merged.head.samples, count_of(out.facts)));
+  out.found = room_for(out.facts);
+  for (int k = 0; k < merged.head.samples; ++k) {
+    const auto& [text, place] = merged.lines[std::size_t(k)];
+    const auto [kind, index] = place_of(out.facts, k);
+    const Json model = kind == Kind::trial          ? Json(DhfgTrial())
+                       : kind == Kind::equal_halves ? Json(LoadedTrial())
+                                                    : Json(EffortRow()),
+               json = Json::parse(text, nullptr, false);
+    if (const auto fault = samples::shape_fault(Json{{"found", model}}, json, ""); !fault.empty())
+      return refused(place, fault);
+    const Json& found = json["found"];
+    if (kind == Kind::trial) found.get_to(out.found.trials[index]);
+    else if (kind == Kind::equal_halves) found.get_to(out.found.equal.trials[index]);
+    else found.get_to(out.found.efforts[index]);
+    if (kind == Kind::trial && Json(out.found.trials[index].levels) != Json(l9_trials()[index]))
+      return refused(place, fmt::format("\"found.levels\" are not those of trial {}", l9_trials()[index].number));
   }
+  return out;
 }
 
 }  // namespace toothpath::trials

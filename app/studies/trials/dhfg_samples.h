@@ -13,6 +13,7 @@
 namespace toothpath::trials {
 
 inline constexpr const char* kDhfg = "dhfg";
+inline constexpr int kDhfgVersion = 1;          ///< of what a sample means: another one, other samples
 inline constexpr std::size_t kMiddleTrial = 3;  ///< trial 4, whose effort is varied, from 0
 
 /// What the tables need of a study besides its samples: the head of its shards.
@@ -35,23 +36,28 @@ struct StudyFound {
   std::vector<EffortRow> efforts;
 };
 
+/// Samples of a study with these facts; room for all of them.
+[[nodiscard]] int count_of(const StudyFacts& facts);
+[[nodiscard]] StudyFound room_for(const StudyFacts& facts);
+/// Sample k of `found` as a line; without its run time, which is another one on every machine.
+[[nodiscard]] std::string sample_line(const StudyFacts& facts, int k, const StudyFound& found);
+/// @param inputs  digest of all files that the study was read from
+[[nodiscard]] samples::Head head_of(const StudyFacts& facts, const std::string& inputs);
+
 /// The study and what its samples share: limits of all trials.
 class DhfgSamples {
  public:
   DhfgSamples(DhfgStudy study, bool quick);
 
   [[nodiscard]] const StudyFacts& facts() const { return facts_; }
-  [[nodiscard]] int count() const;
+  [[nodiscard]] int count() const { return count_of(facts_); }
   /// Of sample k: "trial 4", "trial 4 with equal halves", "effort 2 of trial 4".
   [[nodiscard]] std::string name(int k) const;
-  /// Room for all samples.
-  [[nodiscard]] StudyFound room() const;
+  [[nodiscard]] StudyFound room() const { return room_for(facts_); }
   /// Fills sample k in. Nothing is refused: what does not work stands in the sample.
   void compute(int k, StudyFound& found) const;
-  /// Sample k of `found` as a line; without its run time, which is another one on every machine.
-  [[nodiscard]] std::string line(int k, const StudyFound& found) const;
-  /// @param inputs  digest of all files that the study was read from
-  [[nodiscard]] samples::Head head(const std::string& inputs) const;
+  [[nodiscard]] std::string line(int k, const StudyFound& found) const { return sample_line(facts_, k, found); }
+  [[nodiscard]] samples::Head head(const std::string& inputs) const { return head_of(facts_, inputs); }
 
  private:
   DhfgStudy study_;
@@ -63,7 +69,7 @@ struct MergedStudy {
   StudyFacts facts;
   StudyFound found;
 };
-/// From head and lines. Errors: what `study dhfg` does not write; the message names it.
+/// From head and lines. Errors: what `study dhfg` does not write, with file and line.
 [[nodiscard]] Result<MergedStudy> study_of(const samples::Merged& merged);
 
 }  // namespace toothpath::trials
