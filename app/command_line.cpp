@@ -7,13 +7,17 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <functional>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <thread>
 
 #include "app/base/out_of_memory.h"
@@ -23,6 +27,7 @@
 #include "app/help/completion.h"
 #include "app/help/man_page.h"
 #include "app/report/svg/html_text.h"
+#include "geometry/base/json_text.h"
 #include "geometry/base/printable.h"
 #include "machines/machine_file.h"
 #include "machines/toml/near_name.h"
@@ -49,9 +54,23 @@ bool wants_color(const std::string& choice, int descriptor) {
   return choice == "always" || (choice == "auto" && terminal_with_color(descriptor));
 }
 
-/// Everything that came to stdout must have arrived: a full disk behind a redirection is an error of ours too.
-bool print(std::string_view text) {
-  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+/// Everything that came to stdout must have arrived: a full disk behind a redirection is an error of ours too. A reader
+/// who has seen enough and went away (head) is none.
+app::ExitCode print(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0)
+    return app::ExitCode::ok;
+  if (errno == EPIPE) return app::ExitCode::ok;
+  std::fprintf(stderr, "error: cannot write to the standard output: %s\n", std::strerror(errno));
+  return app::ExitCode::file_access;
+}
+
+constexpr std::size_t kMostErrors = 100;
+
+/// The first of them, and how many there are beside them: a file may be wrong in every line.
+std::vector<Diagnostic> shown(const std::vector<Diagnostic>& errors) {
+  std::vector<Diagnostic> all(errors.begin(), errors.begin() + std::ptrdiff_t(std::min(errors.size(), kMostErrors)));
+  if (errors.size() > kMostErrors) all.push_back(fail("{} more of them are not shown", errors.size() - kMostErrors));
+  return all;
 }
 
 std::string outcome_json(const std::string& command, const commands::CommandOutcome& outcome) {
@@ -60,33 +79,29 @@ std::string outcome_json(const std::string& command, const commands::CommandOutc
   json["command"] = command;
   json["exit_code"] = static_cast<int>(outcome.exit_code);
   json["errors"] = nlohmann::ordered_json::array();
-  for (const auto& error : outcome.errors)
+  for (const auto& error : shown(outcome.errors))
     json["errors"].push_back({{"file", svg::valid_utf8(error.position.file)},
                               {"line", error.position.line},
                               {"column", error.position.column},
                               {"message", svg::valid_utf8(error.message)}});
   if (const std::string note = app::OutputDir::closing_note(); !note.empty()) json["note"] = svg::valid_utf8(note);
   if (!outcome.report_json.empty()) json["report"] = nlohmann::ordered_json::parse(outcome.report_json);
-  return json.dump() + "\n";
+  return json_text(json) + "\n";
 }
 
 /// Errors to stderr, the result to stdout.
 int present(const std::string& command, const commands::CommandOutcome& outcome, const GlobalOptions& options) {
   const bool color = wants_color(options.color, STDERR_FILENO);
-  for (const auto& error : outcome.errors)
+  for (const auto& error : shown(outcome.errors))
     std::fprintf(stderr, "%s%s%s\n", color ? "\033[31m" : "", error.text().c_str(), color ? "\033[0m" : "");
   if (const std::string note = app::OutputDir::closing_note();
       !note.empty() && (!options.quiet || outcome.exit_code != app::ExitCode::ok))
     std::fprintf(stderr, "note: %s\n", printable(note).c_str());
   std::fflush(stderr);
-  bool printed = true;
+  app::ExitCode printed = app::ExitCode::ok;
   if (options.json) printed = print(outcome_json(command, outcome));
   else if (!options.quiet) printed = print(printable_lines(outcome.summary, wants_color(options.color, STDOUT_FILENO)));
-  if (!printed && outcome.exit_code == app::ExitCode::ok) {
-    std::fputs("error: cannot write to the standard output\n", stderr);
-    return static_cast<int>(app::ExitCode::file_access);
-  }
-  return static_cast<int>(outcome.exit_code);
+  return static_cast<int>(outcome.exit_code == app::ExitCode::ok ? printed : outcome.exit_code);
 }
 
 commands::CommandOutcome internal_error(std::string message) {
@@ -253,8 +268,10 @@ int run_command_line(int argc, char** argv) {
     if (app.get_subcommands().empty()) throw CLI::CallForHelp();
   } catch (const CLI::ParseError& error) {
     const bool help = error.get_exit_code() == 0 && argc > 1;
-    app.exit(error);
-    return static_cast<int>(help ? app::ExitCode::ok : app::ExitCode::usage);
+    std::ostringstream text;
+    app.exit(error, text, std::cerr);
+    const app::ExitCode printed = print(text.str());
+    return static_cast<int>(help ? printed : app::ExitCode::usage);
   }
 
   const commands::CommonRequest request{options.quiet || options.json || options.progress == "never",

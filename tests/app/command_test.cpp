@@ -133,6 +133,112 @@ TEST(CommandLine, HelpAndVersion) {
   EXPECT_TRUE(version.out.starts_with("toothpath ")) << version.out;
 }
 
+TEST(CommandLine, HelpThatDoesNotArriveIsFour) {
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"--help"}, {"--version"}, {"run", "--help"}, {"machine", "list"}}) {
+    Launch launch;
+    launch.arguments = words;
+    launch.stdout_file = "/dev/full";
+    const Finished full = run_program(launch);
+    EXPECT_EQ(full.exit_code, 4) << words.front();
+    EXPECT_NE(full.err.find("error: cannot write to the standard output: No space left"), std::string::npos);
+    // A reader who has seen enough: there is nobody at the other end of the pipe.
+    launch.stdout_file.clear();
+    launch.in_child = [] {
+      int ends[2];
+      if (::pipe(ends) == 0) ::close(ends[0]), ::dup2(ends[1], STDOUT_FILENO);
+    };
+    const Finished gone = run_program(launch);
+    EXPECT_EQ(gone.exit_code, 0) << words.front();
+    EXPECT_EQ(gone.err, "");
+  }
+}
+
+// Places that cannot be used are told as files that cannot be read or written.
+TEST(CommandLine, OddPlacesAreThreeOrFourWithAPlace) {
+  const TestDir dir;
+  const std::string loop = dir / "loop", deep = dir / std::string(300, 'x'), job = dir / "job.toml", long_path = [&] {
+    std::string path = dir.path();
+    while (path.size() < 5000) path += "/a";
+    return path;
+  }();
+  std::filesystem::create_symlink(loop, loop);
+  std::filesystem::copy_file(kQuick, job);
+  using Words = std::vector<std::string>;
+  const Words kind = {"--gear", "face", "--cut", "shaped", "--machine", "y514", "--teeth", "53", "--module", "2"};
+  for (const std::string& place : {loop, loop + "/file", deep, deep + "/file", long_path, dir / "job.toml/file"}) {
+    Words made = {"new", "-o", place};
+    made.insert(made.end(), kind.begin(), kind.end());
+    for (const Words& words :
+         {Words{"run", place, "--out", dir / "out"}, Words{"surface", job, "--out", place},
+          Words{"machine", "show", place}, Words{"machine", "show", "y514", "--out", place},
+          Words{"contact", job, "--out", dir / "out", "--optimise", "--write", place}, Words{"study", "merge", place},
+          Words{"check", job, place, "--out", dir / "out"}, made}) {
+      if (words.front() == "machine" && place == loop) continue;  // "loop" is no file of a machine either way
+      const Finished run = run_program(words);
+      const bool taken = words.front() == "new" && place == loop;  // something stands there: usage
+      EXPECT_TRUE(run.exit_code == 3 || run.exit_code == 4 ||
+                  (run.exit_code == 2 && (taken || words.front() == "contact")))
+          << fmt::format("{} {}: {} ", words.front(), place.substr(0, 100), run.exit_code) << run.err;
+      EXPECT_NE(run.err.find(": "), std::string::npos);
+    }
+  }
+  EXPECT_EQ(names_in(dir.path()), (std::vector<std::string>{"job.toml", "loop"}));
+}
+
+TEST(CommandLine, AFolderOfBytesThatAreNoTextServes) {
+  const TestDir dir;
+  const std::string folder = dir / "G\xfcnter", job = folder + "/sp\xe4t.toml";
+  std::filesystem::create_directory(folder);
+  std::filesystem::copy_file(kQuick, job);
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"run", job, "--out", folder + "/out"},
+                                                {"surface", job, "--out", folder + "/out"},
+                                                {"check", job, folder + "/out/program.ngc", "--out", folder + "/check"},
+                                                {"machine", "show", "y514", "--out", folder + "/machine"}}) {
+    auto with_json = words;
+    with_json.push_back("--json");
+    const Finished run = run_program(with_json);
+    EXPECT_EQ(run.exit_code, 0) << words.front() << run.err;
+    EXPECT_TRUE(nlohmann::json::accept(run.out)) << words.front();
+  }
+}
+
+// A directory that was removed under the feet of a shell.
+TEST(CommandLine, WithoutACurrentDirectoryNothingIsWritten) {
+  const TestDir dir;
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"surface", kQuick, "--out", "out"},
+                                                {"run", "job.toml", "--out", dir / "out"},
+                                                {"new", "-o", "job.toml", "--gear", "face", "--cut", "shaped",
+                                                 "--machine", "y514", "--teeth", "53", "--module", "2"}}) {
+    Launch launch;
+    launch.arguments = words;
+    launch.in_child = [&] {
+      const std::string gone = dir / "gone";
+      ::mkdir(gone.c_str(), 0700);
+      if (::chdir(gone.c_str()) == 0) ::rmdir(gone.c_str());
+    };
+    const Finished run = run_program(launch);
+    EXPECT_EQ(run.exit_code, 4) << words.front() << run.err;
+    EXPECT_NE(run.err.find(words.front() == "surface" ? "out: error: " : "job.toml: error: "), std::string::npos)
+        << run.err;
+    EXPECT_TRUE(names_in(dir.path()).empty());
+  }
+}
+
+// nohup, and jobs that a shell starts in the background.
+TEST(CommandLine, ASignalThatTheCallerIgnoresStaysIgnored) {
+  for (const int number : {SIGHUP, SIGINT}) {
+    const TestDir dir;
+    Launch launch;
+    launch.arguments = {"run", kQuick, "--out", dir / "out", "--quiet"};
+    launch.in_child = [number] { ::signal(number, SIG_IGN); };
+    launch.signal_number = number;
+    launch.signal_when = dir / "out/.toothpath-lock";
+    const Finished run = run_program(launch);
+    EXPECT_EQ(run.exit_code, 0) << number << run.err;
+  }
+}
+
 TEST(CommandLine, SurfaceWritesItsFilesAndNothingElse) {
   const TestDir dir;
   const Finished run = run_program({"surface", kQuick, "--out", dir / "a/b"});
