@@ -17,6 +17,7 @@ constexpr toml::Range kSpeed{1, 500000, " 1/min"};
 constexpr toml::Range kFeed{0.1, 100000, " mm/min"};  // less is slower than any control counts
 constexpr toml::Range kStep{0.001, 100, " mm"};
 constexpr toml::Range kAllowance{0, 50, " mm"};
+constexpr double kLeastAllowance = 1e-4;  // mm: the path follows a share of it, and is rounded like all numbers of NC
 constexpr toml::Range kScallop{1e-5, 1, " mm"};
 constexpr toml::Range kChordTolerance{1e-5, 0.1, " mm"};
 constexpr toml::Range kPosition{-100000, 100000, " mm"};
@@ -144,6 +145,13 @@ void read_scallop(toml::TableReader& table, path::MillingOperation& operation) {
   heights->finish();
 }
 
+/// Stock that stays: none, or as much as a path can keep.
+void check_allowance(toml::TableReader& table, double allowance_mm) {
+  if (allowance_mm > 0 && allowance_mm < kLeastAllowance)
+    table.refuse("allowance", "allowance = {} mm is below {} mm, the least stock that a path can leave: 0 leaves none",
+                 allowance_mm, kLeastAllowance);
+}
+
 path::MillingOperation read_ball_operation(toml::TableReader& table, path::OperationType type) {
   path::MillingOperation operation;
   if (type == path::OperationType::roughing) {
@@ -156,6 +164,7 @@ path::MillingOperation read_ball_operation(toml::TableReader& table, path::Opera
   }
   if (type != path::OperationType::finishing)
     operation.allowance_mm = table.number("allowance", kAllowance).value_or(0);
+  check_allowance(table, operation.allowance_mm);
   return operation;
 }
 
@@ -163,6 +172,7 @@ path::MillingOperation read_line_operation(toml::TableReader& table) {
   path::MillingOperation operation;
   operation.regions = {{true, false, false}};
   operation.allowance_mm = table.number_or("allowance", kAllowance, operation.allowance_mm);
+  check_allowance(table, operation.allowance_mm);
   operation.strips = table.optional_integer("strips", {1, path::kMostStrips});
   operation.left_mm = table.optional_number("left", kScallop);
   if (const auto word = table.optional_word("rotaries", {"both", "one"}))

@@ -16,6 +16,7 @@ using modification::Kind;
 using modification::Law;
 
 constexpr toml::Range kAmount{-5, 5, " mm"}, kModifiedLength{0, 1000, " mm", true}, kTransition{0.01, 1000, " mm"};
+constexpr std::size_t kMostDepths = 400;  // of all grids: every place of a flank costs all of them
 constexpr std::size_t kMostModifications = 50, kMostGridBytes = 1u << 20, kMostGridLines = 100;
 constexpr std::string_view kGridHeader = "along,depth,removal";
 
@@ -107,6 +108,7 @@ std::vector<modification::Modification> read_modifications(toml::TableReader& ow
     owner.refuse("modification", "{} modifications exceed the limit {}", tables.size(), kMostModifications);
   std::vector<std::string_view> words;
   for (int k = 0; k < modification::kKinds; ++k) words.emplace_back(to_string(Kind(k)));
+  std::size_t depths = 0;
   for (auto& table : tables) {
     modification::Modification m;
     const auto word = table.variant("kind", words);
@@ -115,8 +117,13 @@ std::vector<modification::Modification> read_modifications(toml::TableReader& ow
       continue;
     }
     while (to_string(m.kind) != *word) m.kind = Kind(int(m.kind) + 1);
+    if (m.kind == Kind::grid && depths > kMostDepths) continue;
     if (m.kind == Kind::grid) read_grid(table, directory, m);
     else m.amount_mm = table.number("amount", kAmount).value_or(0);
+    if (m.grid) depths += m.grid->depth_mm.size();
+    if (depths > kMostDepths)
+      table.refuse("file", "the grids have {} depths up to here, which exceeds {}: put several of them into one grid",
+                   depths, kMostDepths);
     if (modification::is_relief(m.kind)) read_relief(table, m);
     const auto flank = table.word_or("flank", {"both", "left", "right"}, "both");
     m.flanks = flank == "left" ? Flanks::left : flank == "right" ? Flanks::right : Flanks::both;

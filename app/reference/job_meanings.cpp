@@ -125,7 +125,7 @@ constexpr Meaning kJobMeanings[] = {
     {"operation.chord_tolerance", "Largest sag of a straight block against the exact path."},
     {"operation.step_down", "Depth of a layer."},
     {"operation.step_over", "Distance between the passes of a layer."},
-    {"operation.allowance", "Stock that stays, along the normal of the finished surface."},
+    {"operation.allowance", "Stock that stays, along the normal of the finished surface: 0, or 0.0001 mm and more."},
     {"operation.regions", "Which regions are cut; left out: all. Finishing operations together cover all three."},
     {"operation.scallop", "Highest cusp between passes; one for all regions or a table with one for each of them."},
     {"operation.scallop.flank", "Highest cusp on the flanks."},

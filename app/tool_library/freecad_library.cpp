@@ -129,7 +129,8 @@ Result<std::vector<LibraryTool>> read_freecad_library(const std::string& text, c
       return fail_at({path, 0, 0}, "a tool of the library lacks \"nr\" or \"path\"");
     const auto name = std::filesystem::path(bit->get<std::string>()).filename();
     std::string file = (folder / name).string();
-    if (!std::filesystem::exists(file)) file = (folder / ".." / "Bit" / name).lexically_normal().string();
+    if (std::error_code error; !std::filesystem::exists(file, error))
+      file = (folder / ".." / "Bit" / name).lexically_normal().string();
     const auto content = toml::read_input_file(file, kMostToolBytes);
     if (!content) return content.error();
     const auto parsed = parse_object(*content, file);

@@ -8,6 +8,9 @@
 namespace toothpath::toml {
 namespace {
 
+constexpr std::size_t kMostTables = 1000;  // of one list: more are no file that somebody wrote
+constexpr std::size_t kMostOfAKind = 20;   // refusals of entries of one list, of unknown keys of one table
+
 /// "gear.zone[0]" is a "gear.zone".
 std::string without_indices(std::string_view path) {
   std::string name;
@@ -258,7 +261,8 @@ std::optional<std::vector<T>> TableReader::list(std::string_view key, const Toml
     return std::nullopt;
   }
   std::vector<T> result;
-  for (std::size_t i = 0; i < array->values.size(); ++i)
+  const std::size_t before = errors();
+  for (std::size_t i = 0; i < array->values.size() && errors() < before + kMostOfAKind; ++i)
     if (auto element = read(array->values[i], fmt::format("{}[{}]", name(key), i)))
       result.push_back(std::move(*element));
   return result.size() == array->values.size() ? std::optional(std::move(result)) : std::nullopt;
@@ -369,6 +373,7 @@ std::optional<TableReader> TableReader::required_table(std::string_view key) {
 
 std::vector<TableReader> TableReader::tables(std::string_view key, const Count& count, Presence noted) {
   std::vector<TableReader> result;
+  const std::size_t before = errors();
   ValueShape shape{ValueKind::tables};
   shape.count = count;
   ask(key, shape, noted);
@@ -379,7 +384,12 @@ std::vector<TableReader> TableReader::tables(std::string_view key, const Count& 
     record(found->position, words().no_table(path_, key, true, found->type()));
     return result;
   }
-  for (std::size_t i = 0; i < array->values.size(); ++i) {
+  if (array->values.size() > kMostTables) {
+    record(found->position, fmt::format("{} = {} tables exceeds {}, the most of one list", join(key),
+                                        array->values.size(), kMostTables));
+    return result;
+  }
+  for (std::size_t i = 0; i < array->values.size() && errors() < before + kMostOfAKind; ++i) {
     const TomlValue& element = array->values[i];
     const std::string path = fmt::format("{}[{}]", join(key), i);
     if (element.table()) result.emplace_back(element, path, *findings_);
@@ -392,8 +402,12 @@ void TableReader::finish() {
   TableWords::KnownKeys absent;  // only these can a misspelt key have been meant to be
   for (const std::string& key : known_)
     if (!has(key)) absent.insert(key);
-  for (const auto& entry : table_.entries)
-    if (!known_.contains(entry.key)) record(entry.key_position, words().unknown(path_, entry.key, absent));
+  const std::size_t before = errors();
+  for (const auto& entry : table_.entries) {
+    if (known_.contains(entry.key)) continue;
+    if (errors() < before + kMostOfAKind) record(entry.key_position, words().unknown(path_, entry.key, absent));
+    else return record(entry.key_position, "from here on more unknown keys");
+  }
 }
 
 void TableReader::name_misspelt(std::string_view key) {

@@ -41,6 +41,35 @@ TEST(JobFile, EverySampleIsRead) {
   EXPECT_GE(count, 5);
 }
 
+// A file that is wrong in a million places is refused in few words, and soon.
+TEST(JobFile, TooManyTablesKeysAndEntriesAreFewRefusals) {
+  std::string tables = "tool = [", keys;
+  for (int k = 0; k < 200'000; ++k) tables += "{},", keys += fmt::format("k{} = 1\n", k);
+  const auto many_tables = errors_of(tables + "]\n");
+  EXPECT_LT(many_tables.size(), 30u);
+  EXPECT_NE(to_text(many_tables).find("job.toml:1:8: error: tool = 200000 tables exceeds 1000"), std::string::npos)
+      << to_text(many_tables);
+  EXPECT_LT(errors_of(keys).size(), 40u);
+}
+
+TEST(JobFile, GridsHaveALimitTogether) {
+  const TestDir dir;
+  std::string grid = "along,depth,removal\n", job = file_text(kSamples + "/spur_quick.toml");
+  for (int depth = 0; depth < 100; ++depth)
+    for (int along = 0; along < 3; ++along) grid += fmt::format("{},{},0.001\n", 60 + 2.5 * along, 0.04 * depth);
+  write_file(dir / "grid.csv", grid);
+  for (int k = 0; k < 5; ++k) {
+    job += "\n[[gear.modification]]\nkind = \"grid\"\nfile = \"grid.csv\"\n";
+    const auto read = job::parse_job(job, dir / "job.toml");
+    EXPECT_EQ(read.has_value(), k < 4) << k;
+    if (!read) {
+      EXPECT_NE(to_text(read.error()).find("the grids have 500 depths up to here, which exceeds 400"),
+                std::string::npos)
+          << to_text(read.error());
+    }
+  }
+}
+
 TEST(JobFile, NumbersAreThoseOfTheFile) {
   const job::Job job = read("dhfg_paper.toml");
   const auto* gear = job.face_gear();
