@@ -509,6 +509,19 @@ class Heidenhain {
   }
 
   // Straight lines.
+  /// F100, and F MAX as the control prints it.
+  Problem feed_word(readback::NcScanner& s, readback::NcExecution::Move& m, bool& fmax) {
+    const int column = s.column();
+    s.advance(1);
+    s.skip_blanks();
+    if (s.take("MAX")) return fmax = true, std::nullopt;
+    const auto f = s.number();
+    if (!f)
+      return here(column, s.rest().starts_with("AUTO") ? "F AUTO is not in the subset: F and a number, or FMAX"
+                                                       : "number expected behind F");
+    m.own_feed = true;
+    return placed(column, execution_.set_feed(*f));
+  }
   Problem straight(readback::NcScanner& s, bool vector) {
     readback::NcExecution::Move m;
     bool fmax = false, m91 = false, m92 = false;
@@ -529,18 +542,7 @@ class Heidenhain {
         continue;
       }
       if (c == 'F') {
-        s.advance(1);
-        s.skip_blanks();
-        if (s.take("MAX")) {
-          fmax = true;
-          continue;
-        }
-        const auto f = s.number();
-        if (!f)
-          return here(column, s.rest().starts_with("AUTO") ? "F AUTO is not in the subset: F and a number, or FMAX"
-                                                           : "number expected behind F");
-        if (auto bad = placed(column, execution_.set_feed(*f))) return bad;
-        m.own_feed = true;
+        if (auto bad = feed_word(s, m, fmax)) return bad;
         continue;
       }
       if (vector && c == 'T' && s.ahead() >= 'X' && s.ahead() <= 'Z') {
