@@ -131,8 +131,8 @@ Result<sheet::DryRunPart> make_part(const machines::Machine& machine, const Mach
   text::NcHeader header;
   header.job_name = (tcp ? "self test tcp " : "self test ") + machine.name;
   header.machine_name = machine.name;
-  header.assumed = machine.assumed_keys;
-  for (std::string& zero : controls::trusted_zeros(machine, false)) header.assumed.push_back(std::move(zero));
+  header.assumed = controls::trusted_zeros(machine, false);
+  header.assumed.insert(header.assumed.end(), machine.assumed_keys.begin(), machine.assumed_keys.end());
   header.program_number = kTestProgram + (tcp ? 1 : 0);
   const auto text =
       text::write_nc(self_test::self_test_program(*test, machine, *dialect), self_test::in_air(*dialect), header);

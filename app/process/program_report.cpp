@@ -64,6 +64,9 @@ report::RunReport report_of(const std::string& command, const job::Job& job, con
   report.machine_file = job.machine.file;
   report.dialect = machine.dialect;
   report.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
+  // First, because the head of a program has few lines.
+  for (const std::string& zero : controls::trusted_zeros(machine, job.program.tilted_planes))
+    report.assumed.push_back(fmt::format("{}: {}", job.machine.file, zero));
   if (machine.assumed)
     for (const auto& key : machine.assumed_keys) report.assumed.push_back(fmt::format("{}: {}", job.machine.file, key));
   if (const controls::Control* control = controls::find(machine.dialect);
@@ -86,8 +89,6 @@ report::RunReport report_of(const std::string& command, const job::Job& job, con
         "{}: program.tilted_planes: {}", job.file,
         text::expanded(control->words.planes.assumed, {{"axis", std::string(1, machine.chain.rotary(1).letter)}})
             .value_or(control->words.planes.assumed)));
-  for (std::string& zero : controls::trusted_zeros(machine, job.program.tilted_planes))
-    report.assumed.push_back(fmt::format("{}: {}", job.machine.file, std::move(zero)));
   report.warnings = job.warnings;
   report.warnings.insert(report.warnings.end(), gear_warnings.begin(), gear_warnings.end());
   note_check_trust(report, job, machine);
