@@ -10,7 +10,9 @@
 #include "app/job/measured_points.h"
 #include "app/report/svg/html_text.h"
 #include "geometry/base/json_text.h"
-#include "machines/toml/regular_file.h"
+#include "geometry/base/printable.h"
+#include "geometry/inspection/table_text.h"
+#include "machines/toml/input_text.h"
 
 namespace toothpath::job {
 namespace {
@@ -26,57 +28,45 @@ Diagnostic at(const std::string& file, int line, std::size_t column, fmt::format
   return d;
 }
 
+constexpr std::array<std::string_view, kMeasuredColumns> kNames = {"zone", "flank", "row", "column", "x",           "y",
+                                                                   "z",    "i",     "j",   "k",      "deviation_um"};
+
 struct Line {
   int number = 0;
-  std::array<std::string_view, kMeasuredColumns> cell;
-  std::array<std::size_t, kMeasuredColumns> column{};
-  int zone = 0, side = 1, row = 0, place = 0;  ///< place: along the face
+  std::array<std::size_t, kMeasuredColumns> column{};  ///< where its cells begin, from 0
+  int zone = 0, side = 1, row = 0, place = 0;          ///< place: along the face
   Vec3 p = Vec3::Zero();
   double deviation_um = 0;
 };
 
-template <typename T>
-bool parse(std::string_view text, T& value) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+bool parse_whole(std::string_view text, int& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc{} && end == text.data() + text.size();
 }
 
-Result<Line> parse_line(std::string_view text, int number, const std::string& file, bool walls) {
+Result<Line> parse_line(const std::vector<inspection::TableCell>& cells, int number, const std::string& file,
+                        bool walls) {
   Line line;
   line.number = number;
-  std::size_t count = 0, begin = 0;
-  for (std::size_t k = 0; k <= text.size(); ++k) {
-    if (k < text.size() && text[k] != ',') continue;
-    if (count < kMeasuredColumns) {
-      line.cell[count] = text.substr(begin, k - begin);
-      line.column[count] = begin;
-    }
-    ++count;
-    begin = k + 1;
-  }
-  if (count != kMeasuredColumns)
-    return at(file, number, 0, "{} columns, must be {}: {}", count, kMeasuredColumns, kHeader);
-  const auto names = [](std::size_t k) {
-    static constexpr std::array<const char*, kMeasuredColumns> kNames = {
-        "zone", "flank", "row", "column", "x", "y", "z", "i", "j", "k", "deviation_um"};
-    return kNames[k];
-  };
-  if (walls && line.cell[1] != "L" && line.cell[1] != "U")
-    return at(file, number, line.column[1], "flank = \"{}\" must be L or U", line.cell[1]);
-  if (walls) line.side = line.cell[1] == "L" ? 1 : -1;
+  if (cells.size() != kMeasuredColumns)
+    return at(file, number, 0, "{} columns, must be {}: {}", cells.size(), kMeasuredColumns, kHeader);
+  for (std::size_t k = 0; k < kMeasuredColumns; ++k) line.column[k] = static_cast<std::size_t>(cells[k].column) - 1;
+  if (walls && cells[1].text != "L" && cells[1].text != "U")
+    return at(file, number, line.column[1], "flank = \"{}\" must be L or U", printable(cells[1].text));
+  if (walls) line.side = cells[1].text == "L" ? 1 : -1;
   std::array<int*, 4> whole = {&line.zone, &line.side, &line.row, &line.place};
   for (std::size_t k = 0; k < 4; ++k)
-    if (!(walls && k == 1) && (!parse(line.cell[k], *whole[k]) || (k != 1 && (*whole[k] < 0 || *whole[k] > 999))))
-      return at(file, number, line.column[k], "{} = \"{}\" is no whole number from 0 to 999", names(k), line.cell[k]);
+    if (!(walls && k == 1) &&
+        (!parse_whole(cells[k].text, *whole[k]) || (k != 1 && (*whole[k] < 0 || *whole[k] > 999))))
+      return at(file, number, line.column[k], "{} = \"{}\" is no whole number from 0 to 999", kNames[k],
+                printable(cells[k].text));
   if (line.side != 1 && line.side != -1)
     return at(file, number, line.column[1], "flank = {} must be 1 or -1", line.side);
   double normal = 0;
   for (std::size_t k = 4; k < kMeasuredColumns; ++k) {
     double& value = k < 7 ? line.p[Eigen::Index(k) - 4] : k < 10 ? normal : line.deviation_um;
-    if (!parse(line.cell[k], value) || !std::isfinite(value))
-      return at(file, number, line.column[k], "{} = \"{}\" is no finite number", names(k), line.cell[k]);
+    if (!inspection::read_cell(cells[k].text, value))
+      return at(file, number, line.column[k], "{} = \"{}\" is no finite number", kNames[k], printable(cells[k].text));
   }
   return line;
 }
@@ -142,18 +132,20 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   std::vector<Line> lines;
   int number = 0;
+  bool headed = false;
   while (!text.empty()) {
-    const auto end = text.find('\n');
-    std::string_view row = text.substr(0, end);
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (row.ends_with('\r')) row.remove_suffix(1);
-    ++number;
-    if (number == 1) {
-      if (row != kHeader) return at(file, 1, 0, "the header is \"{}\", must be \"{}\"", row.substr(0, 120), kHeader);
+    const auto [row, at_line] = inspection::take_line(text, number);
+    number = at_line;
+    if (!headed) {
+      if (inspection::is_separator_line(row)) continue;
+      if (!inspection::names_columns(row, kHeader))
+        return at(file, number, 0, "the header is \"{}\", must be \"{}\"", printable(row.substr(0, 120)), kHeader);
+      headed = true;
       continue;
     }
-    if (row.empty()) continue;
-    auto line = parse_line(row, number, file, gear.walls);
+    const auto cells = inspection::number_cells(row);
+    if (std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.text.empty(); })) continue;
+    auto line = parse_line(cells, number, file, gear.walls);
     if (!line) return line.error();
     lines.push_back(*line);
   }
@@ -240,7 +232,7 @@ Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal, const Mea
   std::vector<MeasuredFlanks> grids;
   std::vector<FittedCorrection> fits;
   for (const auto& file : measured.files) {
-    const auto text = toml::read_input_file(file, kMostMeasuredBytes);
+    const auto text = toml::read_input_text(file, kMostMeasuredBytes);
     if (!text) return text.error();
     if (looks_like_grid(*text)) {
       if (measured.ball_diameter_mm)
@@ -277,7 +269,7 @@ namespace {
 Result<std::vector<MeasuredFlanks>> read_measured_grids(const MeasuredInput& measured, const GridOfGear& gear) {
   std::vector<MeasuredFlanks> grids;
   for (const auto& file : measured.files) {
-    const auto text = toml::read_input_file(file, kMostMeasuredBytes);
+    const auto text = toml::read_input_text(file, kMostMeasuredBytes);
     if (!text) return text.error();
     if (!looks_like_grid(*text))
       return at(file, 1, 0,

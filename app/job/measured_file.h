@@ -27,7 +27,8 @@ struct MeasuredFlanks {
   std::vector<double> deviation_mm;
 };
 
-/// Reads lines `zone,flank,row,column,x,y,z,i,j,k,deviation_um` with that header, any order, every point of the grid
+/// Reads lines `zone,flank,row,column,x,y,z,i,j,k,deviation_um` with that header, as a spreadsheet may save them
+/// (geometry/inspection/table_text.h: other separators, quotes, decimal commas), any order, every point of the grid
 /// once; the numbers of rows (5 or more) and columns (9 or more) are those of the file. Points must be the nominal ones
 /// within 0.005 mm. Refused with line and column: another header, numbers that are none, points off the grid or
 /// missing, coordinates in inch, m or um, deviations whose size speaks of another unit. `file` stands in the messages.

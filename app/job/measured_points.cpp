@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/inspection/table_text.h"
+
 namespace toothpath::job {
 namespace {
 
@@ -28,7 +30,10 @@ Diagnostic in_file(const MeasuredPoints& measured, int zone, int side, const std
 
 bool looks_like_grid(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-  return text.empty() || text.starts_with("zone");
+  auto line = inspection::take_line(text, 0);
+  if (inspection::is_separator_line(line.text)) line = inspection::take_line(text, 1);
+  const auto cells = inspection::heading_cells(line.text);
+  return (cells.empty() && text.empty()) || (!cells.empty() && cells.front().text == "zone");
 }
 
 Result<MeasuredPoints> parse_measured_points(std::string_view text, const std::string& file,

@@ -1,11 +1,11 @@
 // [[gear.modification]] and [[contact.modification]]: flank modifications, and the grids that they name.
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <map>
 
 #include "app/job/tables.h"
-#include "machines/toml/regular_file.h"
+#include "geometry/inspection/table_text.h"
+#include "machines/toml/input_text.h"
 
 namespace toothpath::job {
 namespace {
@@ -20,39 +20,21 @@ constexpr std::size_t kMostDepths = 400;  // of all grids: every place of a flan
 constexpr std::size_t kMostModifications = 50, kMostGridBytes = 1u << 20, kMostGridLines = 100;
 constexpr std::string_view kGridHeader = "along,depth,removal";
 
-/// Three numbers of a line; nothing where it is anything else.
-std::optional<std::array<double, 3>> numbers_of(std::string_view line) {
-  std::array<double, 3> out{};
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    const std::size_t comma = line.find(',');
-    if ((comma == std::string_view::npos) != (k + 1 == out.size())) return {};
-    std::string_view cell = line.substr(0, comma);
-    while (!cell.empty() && cell.front() == ' ') cell.remove_prefix(1);
-    while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), out[k]);
-    if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(out[k])) return {};
-    if (comma != std::string_view::npos) line.remove_prefix(comma + 1);
-  }
-  return out;
-}
-
 /// The lines of a grid in any order, every depth with every place along the face once.
 Result<modification::Grid> parse_grid(const std::string& text, const std::string& path) {
   std::map<double, std::map<double, double>> rows;  // depth, along
   std::map<double, int> places;
   int number = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    std::string_view line(text.data() + at, end - at);
-    at = end + 1;
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    ++number;
+  for (std::string_view rest = text; !rest.empty();) {
+    const auto line = inspection::take_line(rest, number);
+    number = line.number;
     if (number == 1) {
-      if (line != kGridHeader) return fail_at({path, 1, 1}, "the first line must be \"{}\"", kGridHeader);
+      if (!inspection::names_columns(line.text, kGridHeader))
+        return fail_at({path, 1, 1}, "the first line must be \"{}\"", kGridHeader);
       continue;
     }
-    if (line.empty()) continue;
-    const auto value = numbers_of(line);
+    if (inspection::number_cells(line.text).empty()) continue;
+    const auto value = inspection::numbers_of<3>(line.text);
     if (!value) return fail_at({path, number, 1}, "three finite numbers in mm are needed: {}", kGridHeader);
     if (!rows[(*value)[1]].emplace((*value)[0], (*value)[2]).second)
       return fail_at({path, number, 1}, "along = {:g}, depth = {:g} stands there twice", (*value)[0], (*value)[1]);
@@ -80,7 +62,7 @@ void read_grid(toml::TableReader& table, const std::string& directory, modificat
   const auto name = table.text("file");
   if (!name) return;
   const auto path = (std::filesystem::path(directory) / *name).string();
-  const auto text = toml::read_input_file(path, kMostGridBytes);
+  const auto text = toml::read_input_text(path, kMostGridBytes);
   if (!text) return table.refuse("file", "file = \"{}\": {}", *name, text.error().message);
   auto grid = parse_grid(*text, path);
   if (!grid) return table.refuse_at(grid.error().position, "{}", grid.error().message);

@@ -16,7 +16,7 @@
 #include "geometry/base/json_text.h"
 #include "geometry/inspection/bevel_touches.h"
 #include "geometry/inspection/face_touches.h"
-#include "machines/toml/regular_file.h"
+#include "machines/toml/input_text.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/controls/registry.h"
 
@@ -134,7 +134,7 @@ CommandOutcome write_program(const ProbeRequest& request, const Inputs& in, app:
 }
 
 CommandOutcome solve(const ProbeRequest& request, const Inputs& in, app::OutputDir& output) {
-  const auto text = toml::read_input_file(request.results, kMostResults);
+  const auto text = toml::read_input_text(request.results, kMostResults);
   if (!text) return app::failed(text.error());
   auto results = parse_touches(*text, request.results);
   if (!results) return app::failed(results.error());

@@ -37,10 +37,11 @@ inline constexpr std::size_t kMostPoints = 500'000;
 /// Refused, with line and column: a point that is not complete, numbers that are none, normals that are none.
 [[nodiscard]] Result<PointFile> parse_dmis_results(std::string_view text, const std::string& file);
 
-/// Lines `x y z` or `x y z i j k`, all of the same number of columns, separated by blanks, tabs, commas or semicolons;
-/// mm. Empty lines and those that begin with #, %, ; or // are comments; a first line of the names of the columns is
-/// passed over. Refused, with line and column: other columns, numbers that are none, a decimal comma, normals that are
-/// none.
+/// Lines `x y z` or `x y z i j k`, all of the same number of columns, as `table_text.h` parts them: blanks, tabs,
+/// commas or semicolons, quotes, decimal points or decimal commas. One column more ahead of them names the point: a
+/// whole number or a text. A first line may name the columns, in any order, with the unit of x, y, z: `Point;X
+/// [mm];..`; without a unit they are mm. Empty lines and those that begin with #, %, ; or // are comments. Refused,
+/// with line and column: other columns, units that are none or differ, numbers that are none, normals that are none.
 [[nodiscard]] Result<PointFile> parse_plain_points(std::string_view text, const std::string& file);
 
 }  // namespace toothpath::inspection

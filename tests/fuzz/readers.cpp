@@ -1,5 +1,6 @@
 #include "tests/fuzz/readers.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <sstream>
@@ -9,6 +10,7 @@
 #include "app/job/measured_points.h"
 #include "app/job/measured_setup.h"
 #include "app/tool_library/tool_library.h"
+#include "geometry/base/plain_text.h"
 #include "geometry/mesh/file.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/shaper/control.h"
@@ -124,17 +126,22 @@ ByteReader measured_reader() {
 std::vector<ByteReader> measured_points_readers() {
   static const face_gear::FaceGear gear = made(spur_parameters());
   const auto grid = inspection::inspection_grid(gear, {5, 9});
-  std::string plain = "# x y z i j k\n", dmis = "UNITS/MM,ANGDEC\nFA(C)=FEAT/GSURF\nPTDATA/CART,1,2,3\n";
+  std::string plain = "# x y z i j k\n", saved = "Point;X [mm];Y [mm];Z [mm]\n",
+              dmis = "UNITS/MM,ANGDEC\nFA(C)=FEAT/GSURF\nPTDATA/CART,1,2,3\n";
   for (const auto& p : *grid) {
     plain += fmt::format("{:.4f} {:.4f} {:.4f} {:.6f} {:.6f} {:.6f}\n", p.p.x(), p.p.y(), p.p.z(), p.n.x(), p.n.y(),
                          p.n.z());
+    std::string row = fmt::format("\"P 1\";{:.4f};{:.4f};{:.4f}\n", p.p.x(), p.p.y(), p.p.z());
+    std::replace(row.begin(), row.end(), '.', ',');
+    saved += row;
     dmis += fmt::format("FA(P)=FEAT/POINT,CART,{:.4f},{:.4f},{:.4f},$\n{:.6f},{:.6f},{:.6f}\n", p.p.x(), p.p.y(),
                         p.p.z(), p.n.x(), p.n.y(), p.n.z());
   }
   const auto read = [](std::string_view bytes) {
-    return fault_of(job::parse_measured_points(bytes, "measured.txt", gear, 0));
+    const auto text = plain_text(std::string(bytes), "measured.txt");
+    return text ? fault_of(job::parse_measured_points(*text, "measured.txt", gear, 0)) : fault_of(text);
   };
-  return {{"measured_plain", "0123456789.,;-+eE \t\n", {plain}, read},
+  return {{"measured_plain", "0123456789.,;-+eE \"\t\r\n[]PXYZmin", {plain, saved}, read},
           {"measured_dmis", "0123456789.,-+$()=/FACRTPOLEU \n", {dmis}, read},
           {"measured_setup",
            kToml,
@@ -153,7 +160,7 @@ std::vector<ByteReader> tool_library_readers() {
       {"tbl", "; tools\nT1 P1 D6.000000 Z+121.500000 ;ball\n\nT12 P12 X+0.1 Z-33.2 D4\r\n"},
       {"json",
        R"({"data": [{"type": "ball end mill", "description": "6", "unit": "inches", "post-process": {"number": 4},)"
-       R"( "geometry": {"DC": 6, "LCF": 12, "LB": 40, "SFDM": 6, "NOF": 2}, "holder": {"gaugeLength": 80, "segments":)"
+       R"( "geometry": {"DC": 6, "LCF": 12, "LB": 40, "SFDM": 6, "NOF": 2}, "holder": {"unit": "inches", "gaugeLength": 80, "segments":)"
        R"( [{"height": 20, "lower-diameter": 24, "upper-diameter": 28}]}}, {"type": "tapered mill", "unit":)"
        R"( "millimeters", "geometry": {"DC": 1.4427, "RE": 0.79375, "TA": 5.5}}]})"},
       {"fctb", bit},

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/plain_text.h"
 #include "geometry/inspection/dmis.h"
 #include "geometry/inspection/point_file.h"
 #include "tests/support/inspection_points.h"
@@ -49,10 +50,62 @@ TEST(PlainPoints, WrongLinesAreRefusedAtTheirPlace) {
             "p.txt:1:5: error: z = \"1e999\" is no finite number");
   EXPECT_EQ(error_of(parse_plain_points("1 2 3 0 0 2\n", "p.txt")),
             "p.txt:1:7: error: the normal (0, 0, 2) has length 2, must be 1 within 0.01");
-  EXPECT_EQ(error_of(parse_plain_points("1,5;2,25;3,125\n", "p.txt")),
-            "p.txt:1:1: error: decimal commas: numbers need a decimal point");
-  EXPECT_EQ(error_of(parse_plain_points("1,5 2,25 3,125\n", "p.txt")),
-            "p.txt:1:1: error: decimal commas: numbers need a decimal point");
+  EXPECT_EQ(error_of(parse_plain_points("1.5;2,25;1.234,5\n", "p.txt")),
+            "p.txt:1:10: error: z = \"1.234,5\" is no finite number");
+  EXPECT_EQ(error_of(parse_plain_points("29.6 1.4 -15.9 0.003\n", "p.txt")),
+            "p.txt:1:1: error: 4 columns, must be 3 (x y z) or 6 (x y z i j k); one more ahead of them is a point's "
+            "number, and \"29.6\" is none");
+  EXPECT_EQ(error_of(parse_plain_points("7 1.5 2 3\n8.5 1.5 2 3\n", "p.txt")),
+            "p.txt:2:1: error: \"8.5\" is no number of a point; that of line 1 is one, x y z follow it");
+  EXPECT_EQ(error_of(parse_plain_points("X [mm];Y [in];Z [mm]\n1;2;3\n", "p.txt")),
+            "p.txt:1:8: error: \"X [mm]\" and \"Y [in]\" are in different units");
+  EXPECT_EQ(error_of(parse_plain_points("X [ell];Y [ell];Z [ell]\n1;2;3\n", "p.txt")),
+            "p.txt:1:1: error: \"X [ell]\": the unit \"ell\" is none of mm, um, cm, m, inch");
+  EXPECT_EQ(error_of(parse_plain_points("X;Y;Z;Dev\n1;2;3;4\n", "p.txt")),
+            "p.txt:1:7: error: column \"Dev\": behind x, y, z only i, j, k (the normal) are read; leave it out");
+  EXPECT_EQ(error_of(parse_plain_points("Point;X;Y;Z\n1;2;3\n", "p.txt")),
+            "p.txt:2:1: error: 3 columns, but 4 in line 1");
+}
+
+TEST(PlainPoints, WhatMachinesAndSpreadsheetsPutAroundTheNumbers) {
+  for (const char* text :
+       {"1 1.5 -2 3\n2 4 5 6\n", "P1\t1.5\t-2\t3\nP2\t4\t5\t6\n", "PT 01;1,5;-2;3\nPT 02;4;5;6\n",
+        "\"1.5\",\"-2\",\"3\"\n\"4\",\"5\",\"6\"\n", "\"1,5\",\"-2,0\",\"3\"\n4,5,6\n", "1,5;-2;3\n4;5;6;\n",
+        "1,5 -2,0 3,00\n4,0 5,0 6,0\n", "sep=;\nX;Y;Z\n1,5;-2;3\n4;5;6\n",
+        "Point;X [mm];Y [mm];Z [mm]\n1;1.5;-2;3\n2;4;5;6\n", "No. X(mm) Y(mm) Z(mm)\n1 1.5 -2 3\n2 4 5 6\n",
+        "X [mm] Y [mm] Z [mm]\n1.5 -2 3\n4 5 6\n", "\"x/mm\",\"y/mm\",\"z/mm\"\n1.5,-2,3\n4,5,6\n",
+        "Name\tX_mm\tY_mm\tZ_mm\na\t1.5\t-2\t3\nb\t4\t5\t6\n", "Z [cm];Y [cm];X [cm]\n0,3;-0,2;0,15\n0,6;0,5;0,4\n",
+        "x [\xC2\xB5m],y [\xC2\xB5m],z [\xC2\xB5m]\n1500,-2000,3000\n4000,5000,6000\n"}) {
+    const auto read = parse_plain_points(text, "p.txt");
+    ASSERT_TRUE(read) << text << read.error().text();
+    ASSERT_EQ(read->points.size(), 2u) << text;
+    EXPECT_LT((read->points[0].p - Vec3(1.5, -2, 3)).norm(), 1e-12) << text;
+    EXPECT_LT((read->points[1].p - Vec3(4, 5, 6)).norm(), 1e-12) << text;
+  }
+  const auto inch = parse_plain_points("Pt;X [in];Y [in];Z [in];I;J;K\n1;1;-2;3;0,6;0;-0,8\n", "p.txt");
+  ASSERT_TRUE(inch) << inch.error().text();
+  EXPECT_LT((inch->points[0].p - 25.4 * Vec3(1, -2, 3)).norm(), 1e-12);
+  EXPECT_LT((*inch->points[0].n - Vec3(0.6, 0, -0.8)).norm(), 1e-15);
+}
+
+TEST(PlainText, AnyEncodingAndEndOfLineGivesTheSameLines) {
+  const std::string wanted = "X [\xC2\xB5m]\n1\n\n\xF0\x9F\x99\x82\n";
+  const std::u16string wide = u"X [\u00B5m]\r\n1\r\r\U0001F642\n";
+  std::string little = "\xFF\xFE", big = "\xFE\xFF";
+  for (const char16_t c : wide) {
+    little += {char(c & 0xFF), char(c >> 8)};
+    big += {char(c >> 8), char(c & 0xFF)};
+  }
+  for (const std::string& bytes :
+       {"\xEF\xBB\xBF" + wanted, wanted + "\xEF\xBB\xBF", little, little + "\xFF\xFE", big, little.substr(2),
+        big.substr(2), std::string("X [\xC2\xB5m]\r1\r\n\r\xF0\x9F\x99\x82\r")}) {
+    const auto text = plain_text(bytes, "f");
+    ASSERT_TRUE(text) << text.error().text();
+    EXPECT_EQ(*text, wanted);
+  }
+  EXPECT_EQ(plain_text(little + "x", "f").error().text(), "f:3:1: error: this is UTF-16 that ends within a character");
+  EXPECT_FALSE(plain_text(std::string("\xFF\xFE\x00\xDC", 4), "f")) << "half a character";
+  EXPECT_EQ(*plain_text("", "f"), "");
 }
 
 TEST(DmisResults, ActualPointsInTheFormsThatMachinesWrite) {
