@@ -37,7 +37,7 @@ using proposal::Question;
 using proposal::Wishes;
 
 struct NewRequest : CommonRequest {
-  std::string gear, route, machine, tools, file, name;
+  std::string gear, route, machine, tools, unit, file, name;
   std::vector<std::string> said;  ///< of tools: "12: stick_out = 40"
   std::array<std::optional<double>, proposal::kQuantities> numbers;
   std::array<std::optional<int>, proposal::kQuantities> whole;
@@ -46,6 +46,8 @@ struct NewRequest : CommonRequest {
 std::vector<Diagnostic> usage(std::string message) {
   return {Diagnostic{DiagnosticKind::usage, {}, std::move(message)}};
 }
+
+constexpr std::array<std::string_view, 2> kLibraryUnits = {"mm", "inch"};
 
 using DoneOrErrors = Expected<Ok, std::vector<Diagnostic>>;
 
@@ -278,7 +280,7 @@ std::string missing_text(const std::vector<job::MissingKey>& keys) {
 
 /// The library of --tools, with what --tool says beside it.
 Expected<LibraryShelf, std::vector<Diagnostic>> open_library(const NewRequest& request) {
-  auto library = LibraryShelf::open(request.tools);
+  auto library = LibraryShelf::open(request.tools, request.unit);
   if (!library) return std::vector{library.error()};
   for (const std::string& said : request.said) {
     const auto colon = said.find(':');
@@ -382,6 +384,11 @@ DoneOrErrors choose_tools(const NewRequest& request, const Dialog& dialog, Choic
   const bool library_file = !request.tools.empty() && fs::path(request.tools).extension() != ".toml";
   if (!library_file && !request.said.empty())
     return usage("--tool says what a tool library does not, and --tools names none");
+  if (!library_file && !request.unit.empty())
+    return usage("--library-unit is the unit of a tool library, and --tools names none");
+  if (!request.unit.empty() &&
+      std::find(kLibraryUnits.begin(), kLibraryUnits.end(), request.unit) == kLibraryUnits.end())
+    return usage(fmt::format("--library-unit = {} is neither mm nor inch", printable(request.unit)));
   const bool used = choice.wishes.route == proposal::Route::ball || choice.wishes.route == proposal::Route::line;
   if (request.tools.empty() || !used) return Ok{};
   if (!library_file) {
@@ -483,6 +490,8 @@ void new_options(OptionSet& set, NewRequest& request) {
   set.text("--tools", request.tools,
            "tools instead of standard sizes: those of a job, or of a tool library of LinuxCNC, Fusion or FreeCAD",
            "FILE");
+  set.word("--library-unit", request.unit, "unit of the lengths for which a tool library states none", "UNIT",
+           kLibraryUnits);
   set.texts("--tool", request.said, "what a tool library does not say of a tool: \"12: stick_out = 40, teeth = 2\"",
             "NUMBER:KEYS");
   for (const Question& question : proposal::questions()) {

@@ -1,6 +1,5 @@
 // [[tool]]: what every tool has, and the numbers of its kind of cutter (cam/tool/cutters.h).
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -9,7 +8,8 @@
 #include "app/tool_library/tool_library.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
-#include "machines/toml/regular_file.h"
+#include "geometry/inspection/table_text.h"
+#include "machines/toml/input_text.h"
 #include "machines/tool_check.h"
 
 namespace toothpath::job {
@@ -24,6 +24,7 @@ constexpr toml::Range kLife{0, 1e6, " min", true};
 constexpr std::size_t kMostSisters = 50;
 constexpr double kSameInLibrary = 1e-4;  // of a number: rounding
 constexpr const char* kTaperAngle = "taper_angle";
+constexpr double kLeastBelowGauge = 0.5;  // of the holder: a spindle does not take more of it
 
 std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
   std::vector<tool::HolderSegment> result;
@@ -61,6 +62,27 @@ std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
     result.push_back({read[0], read[1], read[2]});
   }
   return result;
+}
+
+/// The gauge line may lie within the holder, where its upper end stands in the spindle: most of the holder is below it,
+/// and nothing above it is wider than the holder is there.
+void check_gauge_length(toml::TableReader& table, const tool::ToolAssembly& tool) {
+  double height = 0, at_line = 0, above = 0;  // of all segments; diameters at the gauge line, and above it
+  const double line = tool.length_mm - tool.stick_out_mm;
+  for (const tool::HolderSegment& s : tool.holder) {
+    const double share = std::clamp((line - height) / s.height_mm, 0.0, 1.0);
+    const double cut = s.lower_diameter_mm + share * (s.upper_diameter_mm - s.lower_diameter_mm);
+    if (height < line) at_line = cut;
+    if (height >= line) above = std::max({above, s.lower_diameter_mm, s.upper_diameter_mm});
+    height += s.height_mm;
+  }
+  if (line >= height || (line >= kLeastBelowGauge * height && above <= at_line)) return;
+  table.refuse(
+      "length",
+      "length = {:.4g} mm, gauge line to tip, is shorter than stick_out = {:.4g} mm and the holder of {:.4g} mm "
+      "allow: the gauge line lies {:.4g} mm above the lower end of the holder, where it is {:.4g} mm thick, and "
+      "what is above stands in the spindle; state length = {:.4g}, or a holder that ends at the gauge line",
+      tool.length_mm, tool.stick_out_mm, height, line, at_line, tool.stick_out_mm + height);
 }
 
 /// How long it lasts, and what goes on in its place.
@@ -107,46 +129,28 @@ void read_finger_lengths(toml::TableReader& table, const ToolContext& context, t
                  "diameter contradicts type = \"finger_mill\": its width follows from module and profile_height");
 }
 
-/// One line `t,f`: mm, um.
-std::optional<std::pair<double, double>> meridian_line(std::string_view line) {
-  const std::size_t comma = line.find(',');
-  if (comma == std::string_view::npos) return {};
-  double value[2] = {};
-  const std::string_view cells[] = {line.substr(0, comma), line.substr(comma + 1)};
-  for (int k = 0; k < 2; ++k) {
-    std::string_view cell = cells[k];
-    while (!cell.empty() && cell.front() == ' ') cell.remove_prefix(1);
-    while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value[k]);
-    if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value[k])) return {};
-  }
-  return std::pair{value[0], value[1]};
-}
-
 /// The measured meridian: a table `t,f`, height above the centre of the ball [mm] and error of rho [um].
 void read_meridian(toml::TableReader& table, const ToolContext& context, tool::ToolAssembly& tool) {
   const auto name = table.optional_text("meridian");
   if (!name) return;
   const auto path = (std::filesystem::path(context.directory) / *name).string();
-  const auto text = toml::read_input_file(path, kMostMeridianBytes);
+  const auto text = toml::read_input_text(path, kMostMeridianBytes);
   if (!text) return table.refuse("meridian", "meridian = \"{}\": {}", *name, text.error().message);
   tool::MeridianError measured;
   int number = 0;
-  for (std::size_t at = 0; at < text->size();) {
-    const std::size_t end = std::min(text->find('\n', at), text->size());
-    std::string_view line(text->data() + at, end - at);
-    at = end + 1;
-    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-    ++number;
+  for (std::string_view rest = *text; !rest.empty();) {
+    const auto line = inspection::take_line(rest, number);
+    number = line.number;
     if (number == 1) {
-      if (line != "t,f") return table.refuse("meridian", "{}:1: the header must be \"t,f\"", *name);
+      if (!inspection::names_columns(line.text, "t,f"))
+        return table.refuse("meridian", "{}:1: the header must be \"t,f\"", *name);
       continue;
     }
-    if (line.empty()) continue;
-    const auto point = meridian_line(line);
+    if (inspection::number_cells(line.text).empty()) continue;
+    const auto point = inspection::numbers_of<2>(line.text);
     if (!point) return table.refuse("meridian", "{}:{}: a line is two numbers: t in mm, f in um", *name, number);
-    measured.t.push_back(point->first);
-    measured.f.push_back(point->second / 1000);
+    measured.t.push_back((*point)[0]);
+    measured.f.push_back((*point)[1] / 1000);
   }
   tool.meridian = std::move(measured);
 }
@@ -193,10 +197,13 @@ class LibrarySupply {
     const auto listed = table.optional_integer("library_number", kToolNumber);
     table.relate(toml::KeyRelation::Kind::supplies, "library", "number");
     table.relate(toml::KeyRelation::Kind::needs, "library_number", "library");
+    const auto unit = table.optional_word("library_unit", {"mm", "inch"});
+    table.relate(toml::KeyRelation::Kind::needs, "library_unit", "library");
+    if (unit && !name) table.refuse("library_unit", "library_unit needs library, the file with that tool");
     if (listed && !name) table.refuse("library_number", "library_number needs library, the file with that tool");
     if (!name) return;
     const auto path = (std::filesystem::path(context.directory) / *name).lexically_normal().string();
-    const auto tools = tool_library::read_tool_library(path);
+    const auto tools = tool_library::read_tool_library(path, tool_library::library_unit_of(unit.value_or("")));
     auto found = tools ? tool_library::tool_of_library(*tools, listed.value_or(number))
                        : Result<tool_library::LibraryTool>(tools.error());
     if (!found) {
@@ -208,6 +215,7 @@ class LibrarySupply {
     }
     tool_ = std::move(*found);
     file_ = *name;
+    check_unit(table, warnings);
     for (const toml::TomlEntry& said : tool_->keys.entries) compare(table, said, warnings);
     table.supply(tool_->keys);
   }
@@ -235,6 +243,19 @@ class LibrarySupply {
                                    b                   ? fmt::format("{:g}", *b)
                                    : said.value.text() ? *said.value.text()
                                                        : "another"));
+  }
+
+  /// A unit that somebody says is needed, or is the same; one that nobody says is told.
+  void check_unit(toml::TableReader& table, std::vector<std::string>& warnings) const {
+    if (tool_->other_unit && !tool_->takes_unit)
+      table.refuse("library_unit", "library_unit: {} states another unit for the lengths of tool {} itself", file_,
+                   tool_->number);
+    if (!tool_->unit_is_open) return;
+    const SourcePosition at = table.where("library");
+    warnings.push_back(
+        fmt::format("{}:{}:{}: warning: {} states no unit, and no .ini beside it does: its lengths are read as mm; say "
+                    "library_unit = \"mm\" or \"inch\"",
+                    at.file, at.line, at.column, file_));
   }
 
   void ask_for_missing(toml::TableReader& table) const {
@@ -280,6 +301,7 @@ tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& contex
   read_life(table, tool);
   if (length && stick_out && *stick_out > *length)
     table.refuse("stick_out", "stick_out = {} mm exceeds length = {} mm", *stick_out, *length);
+  else if (length && stick_out && !tool.holder.empty()) check_gauge_length(table, tool);
   if (!type) {
     if (supply.finish(table)) return tool;
     table.name_misspelt("type");

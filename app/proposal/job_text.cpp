@@ -89,6 +89,7 @@ std::string value_text(const toml::TomlValue& value) {
 std::string library_tool_text(const tool::ToolAssembly& tool, const LibraryWords& library) {
   std::string text = fmt::format("\n[[tool]]\nnumber = {}\n", tool.number);
   text += line("library", toml::quoted(library.file), "says of this tool what does not stand here");
+  if (!library.unit.empty()) text += line("library_unit", toml::quoted(library.unit));
   const auto said = library.said.find(tool.number);
   if (said != library.said.end())
     for (const toml::TomlEntry& entry : said->second.entries) text += line(entry.key.c_str(), value_text(entry.value));

@@ -45,11 +45,12 @@ std::string LibraryShelf::Tool::title() const {
   return known.name.empty() ? fmt::format("tool {}", number()) : fmt::format("tool {} ({})", number(), known.name);
 }
 
-Result<LibraryShelf> LibraryShelf::open(const std::string& file) {
-  auto read = tool_library::read_tool_library(file);
+Result<LibraryShelf> LibraryShelf::open(const std::string& file, const std::string& unit) {
+  auto read = tool_library::read_tool_library(file, tool_library::library_unit_of(unit));
   if (!read) return read.error();
   LibraryShelf shelf;
   shelf.file_ = file;
+  shelf.unit_ = unit;
   for (tool_library::LibraryTool& known : *read) {
     Tool tool{std::move(known), {}, {}};
     tool.reading = job::read_library_tool(tool.known, tool.said);
@@ -62,7 +63,7 @@ Status LibraryShelf::say(int number, const toml::TomlTable& keys) {
   const auto refuse = [&](const std::string& why) -> Status {
     return fail_as(DiagnosticKind::usage, "--tool {}: {}", number, why);
   };
-  for (const char* key : {"number", "library", "library_number"})
+  for (const char* key : {"number", "library", "library_number", "library_unit"})
     if (keys.find(key)) return refuse(fmt::format("{} is not said here: it follows from --tools", key));
   std::vector<tool_library::LibraryTool> all;
   for (const Tool& tool : tools_) all.push_back(tool.known);
@@ -141,7 +142,7 @@ Shelf LibraryShelf::whole() const {
 }
 
 LibraryWords LibraryShelf::words(const std::string& file) const {
-  LibraryWords words{file, {}};
+  LibraryWords words{file, unit_, {}};
   for (const Tool& tool : tools_) words.said[tool.number()] = tool.said;
   return words;
 }

@@ -15,6 +15,7 @@ namespace toothpath::proposal {
 /// What a job says of its tools beside the name of their library.
 struct LibraryWords {
   std::string file;                     ///< as the job names it; empty: tools are written out
+  std::string unit;                     ///< its `library_unit`; empty: none is said
   std::map<int, toml::TomlTable> said;  ///< keys of a [[tool]] that stand in the job, by its number
 };
 
@@ -31,8 +32,9 @@ class LibraryShelf {
     [[nodiscard]] std::string title() const;
   };
 
+  /// @param unit  "mm" or "inch" for lengths of which the file states no unit; empty: nobody says it
   /// Refused: what the reader of the library refuses.
-  [[nodiscard]] static Result<LibraryShelf> open(const std::string& file);
+  [[nodiscard]] static Result<LibraryShelf> open(const std::string& file, const std::string& unit);
 
   /// Keys that hold beside what the library says of a tool, or instead of it. Refused (kind usage): no such tool, a
   /// key that a [[tool]] does not have, a wrong value; the tool then stays as it was.
@@ -56,7 +58,7 @@ class LibraryShelf {
   [[nodiscard]] LibraryWords words(const std::string& file) const;
 
  private:
-  std::string file_;
+  std::string file_, unit_;
   std::vector<Tool> tools_;
 };
 

@@ -85,10 +85,13 @@ constexpr Meaning kJobMeanings[] = {
     {"tool", "A cutter with its neck and holder; all of them are checked."},
     {"tool.number", "Number of the tool (T word); operations name it."},
     {"tool.library",
-     "File with tools beside the job: the tool table of LinuxCNC (.tbl), the tool library of Fusion (.json), a tool "
-     "bit "
-     "or library of FreeCAD (.fctb, .fctl). What it says of the tool need not stand here; what stands here holds."},
+     "File with tools beside the job: the tool table of LinuxCNC (.tbl), the tool library of Fusion (.json, .tools), a "
+     "tool bit or library of FreeCAD (.fctb, .fctl). What it says of the tool need not stand here; what stands here "
+     "holds."},
     {"tool.library_number", "Number of the tool in that file, where it is not `number`."},
+    {"tool.library_unit",
+     "Unit of the lengths for which that file states none. A tool table (.tbl) states none: left out, its lengths are "
+     "mm, and it is refused where an .ini beside it, its remarks or its diameters speak of inches."},
     {"tool.type", "Kind of cutter."},
     {"tool.diameter", "Diameter of the cutter; of a tapered one that of its ball."},
     {"tool.flute_length",

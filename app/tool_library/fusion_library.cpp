@@ -1,5 +1,6 @@
 // The tool library of Fusion, as it exports it: an array "data", the numbers named as in ISO 13399 (DC, LCF, SFDM, NOF,
-// RE), LB the length below the holder, holder segments from the tool side. Lengths in the unit that the tool states.
+// RE), LB the length below the holder, holder segments from the tool side. Lengths in the unit that the tool states; a
+// holder states a unit of its own.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -7,6 +8,7 @@
 
 #include "app/tool_library/formats.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/length_unit.h"
 #include "geometry/base/printable.h"
 
 namespace toothpath::tool_library {
@@ -14,7 +16,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kInch = 25.4;       // mm
 constexpr double kSameShare = 2e-3;  // of a length: two ways to say it agree (libraries round to 4 digits)
 constexpr int kMostSegments = 100;
 
@@ -37,7 +38,7 @@ std::string text(const Json& object, const char* name) {
 /// One tool of the library while it is read.
 class Entry {
  public:
-  Entry(const Json& json, const SourcePosition& at) : json_(json), at_(at) {}
+  Entry(const Json& json, const SourcePosition& at, LibraryUnit said) : json_(json), at_(at), said_(said) {}
 
   /// Nothing: a kind that no job has.
   [[nodiscard]] Result<std::optional<LibraryTool>> read() {
@@ -47,20 +48,39 @@ class Entry {
     tool_.name = text(json_, "description");
     const Json* post = member(json_, "post-process");
     if (const auto n = post ? number(*post, "number") : std::nullopt; n && *n >= 1 && *n <= 1e6) tool_.number = int(*n);
-    const std::string unit = text(json_, "unit");
-    if (unit == "inches") scale_ = kInch;
-    else if (unit != "millimeters")
-      return fail_at(at_, "tool {} \"{}\": unit = \"{}\" is neither \"millimeters\" nor \"inches\"", tool_.number,
-                     printable(tool_.name), printable(unit));
+    const auto unit = unit_of(json_, "unit");
+    if (!unit) return unit.error();
+    scale_ = *unit;
     if (const Json* found = member(json_, "geometry")) geometry_ = found;
+    const Json* holder = member(json_, "holder");
+    if (holder && (member(*holder, "segments") || member(*holder, "gaugeLength"))) {
+      if (const auto own = unit_of(*holder, "unit of the holder")) holder_scale_ = *own;
+      else tool_.notes.push_back(own.error().message);
+    }
     form(type);
     lengths();
-    if (const Json* holder = member(json_, "holder")) read_holder(*holder);
+    if (holder) read_holder(*holder);
     else tool_.notes.push_back("no holder");
     return std::optional(std::move(tool_));
   }
 
  private:
+  /// Millimetres of the unit that the tool, or its holder, states: as "unit", or, in older libraries, as the expression
+  /// "tool_unit".
+  [[nodiscard]] Result<double> unit_of(const Json& json, const char* what) {
+    std::string word = text(json, "unit");
+    if (const Json* expressions = member(json, "expressions"); word.empty() && expressions) {
+      word = text(*expressions, "tool_unit");
+      std::erase(word, '\'');
+    }
+    const auto mm = word.empty() ? std::nullopt : mm_of_unit(word);
+    const auto taken = unit_of_length(mm, mm || word.empty() ? said_ : LibraryUnit::none, tool_);
+    if (taken) return *taken;
+    const std::string which = fmt::format("tool {} \"{}\": {}", tool_.number, printable(tool_.name), what);
+    if (word.empty()) return fail_at(at_, "{} is not there: {}", which, kUnitKey);
+    return fail_at(at_, "{} = \"{}\" is neither \"millimeters\" nor \"inches\"", which, printable(word));
+  }
+
   [[nodiscard]] std::optional<double> length(const char* name) const {
     const auto value = geometry_ ? number(*geometry_, name) : std::nullopt;
     return value && *value > 0 ? std::optional(*value * scale_) : std::nullopt;
@@ -119,20 +139,21 @@ class Entry {
     if (const auto stated = length("assemblyGaugeLength")) return key("length", *stated);
     const Json* holder = member(json_, "holder");
     const auto own = holder ? number(*holder, "gaugeLength") : std::nullopt;
-    if (const auto below = length("LB"); own && below) key("length", *own * scale_ + *below);
+    if (const auto below = length("LB"); own && below && holder_scale_) key("length", *own * *holder_scale_ + *below);
   }
 
   void read_holder(const Json& holder) {
     const Json* segments = member(holder, "segments");
     if (!segments || !segments->is_array() || segments->empty() || segments->size() > kMostSegments)
       return tool_.notes.push_back("the holder has no segments");
+    if (!holder_scale_) return;
     toml::TomlArray all;
     for (const Json& segment : *segments) {
       toml::TomlArray one;
       for (const char* name : {"lower-diameter", "upper-diameter", "height"}) {
         const auto value = number(segment, name);
         if (!value) return tool_.notes.push_back(fmt::format("a segment of the holder has no {}", name));
-        one.values.push_back({at_, {*value * scale_}});
+        one.values.push_back({at_, {*value * *holder_scale_}});
       }
       all.values.push_back({at_, {std::move(one)}});
     }
@@ -142,20 +163,23 @@ class Entry {
   const Json& json_;
   const SourcePosition at_;
   const Json* geometry_ = nullptr;
-  double scale_ = 1;  ///< mm of the unit
+  LibraryUnit said_;
+  double scale_ = 1;                    ///< mm of the unit
+  std::optional<double> holder_scale_;  ///< nothing: its unit is not known
   LibraryTool tool_;
 };
 
 }  // namespace
 
-Result<std::vector<LibraryTool>> read_fusion_library(const std::string& content, const std::string& path) {
+Result<std::vector<LibraryTool>> read_fusion_library(const std::string& content, const std::string& path,
+                                                     LibraryUnit unit) {
   const auto json = parse_object(content, path);
   if (!json) return json.error();
   const Json* data = member(*json, "data");
   if (!data || !data->is_array()) return fail_at({path, 0, 0}, "a tool library of Fusion has an array \"data\"");
   std::vector<LibraryTool> tools;
   for (const Json& one : *data) {
-    auto tool = Entry(one, {path, 0, 0}).read();
+    auto tool = Entry(one, {path, 0, 0}, unit).read();
     if (!tool) return tool.error();
     if (*tool) tools.push_back(std::move(**tool));
   }

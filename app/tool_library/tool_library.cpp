@@ -8,6 +8,8 @@
 #include <set>
 
 #include "app/tool_library/formats.h"
+#include "geometry/base/length_unit.h"
+#include "machines/toml/input_text.h"
 #include "machines/toml/regular_file.h"
 
 namespace toothpath::tool_library {
@@ -26,20 +28,52 @@ Result<nlohmann::json> parse_object(const std::string& text, const std::string& 
   } catch (const nlohmann::json::exception&) { return fail_at({path, 0, 0}, "a number is too large"); }
 }
 
-Result<std::vector<LibraryTool>> read_tool_library_text(const std::string& text, const std::string& path) {
+LibraryUnit library_unit_of(std::string_view word) {
+  return word == "inch" ? LibraryUnit::inch : word == "mm" ? LibraryUnit::mm : LibraryUnit::none;
+}
+
+std::optional<double> mm_of(LibraryUnit unit) {
+  if (unit == LibraryUnit::none) return std::nullopt;
+  return unit == LibraryUnit::inch ? kInchMm : 1.0;
+}
+
+std::optional<double> unit_of_length(std::optional<double> stated_mm, LibraryUnit said, LibraryTool& tool) {
+  const auto other = mm_of(said);
+  if (!stated_mm) tool.takes_unit = tool.takes_unit || other;
+  else tool.other_unit = tool.other_unit || (other && *other != *stated_mm);
+  return stated_mm ? stated_mm : other;
+}
+
+namespace {
+
+std::string ending_of(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  if (ending == ".tbl") return read_linuxcnc_table(text, path);
-  if (ending == ".json") return read_fusion_library(text, path);
-  if (ending == ".fctb") return read_freecad_bit(text, path);
-  if (ending == ".fctl") return read_freecad_library(text, path);
+  return ending;
+}
+
+}  // namespace
+
+Result<std::vector<LibraryTool>> read_tool_library_text(const std::string& text, const std::string& path,
+                                                        LibraryUnit unit) {
+  const std::string ending = ending_of(path);
+  if (ending == ".tbl") return read_linuxcnc_table(text, path, unit);
+  if (ending == ".json") return read_fusion_library(text, path, unit);
+  if (ending == ".fctb") return read_freecad_bit(text, path, unit);
+  if (ending == ".fctl") return read_freecad_library(text, path, unit);
+  if (ending == ".tools") {
+    const auto json = unzipped(text, ".json", path);
+    if (!json) return json.error();
+    return read_fusion_library(*json, path, unit);
+  }
   return fail_at({path, 0, 0}, "tools are read from {}; this ends with \"{}\"", kFormats, ending);
 }
 
-Result<std::vector<LibraryTool>> read_tool_library(const std::string& path) {
-  const auto text = toml::read_input_file(path, kMostToolBytes);
+Result<std::vector<LibraryTool>> read_tool_library(const std::string& path, LibraryUnit unit) {
+  const auto text = ending_of(path) == ".tools" ? toml::read_input_file(path, kMostToolBytes)
+                                                : toml::read_input_text(path, kMostToolBytes);
   if (!text) return text.error();
-  return read_tool_library_text(*text, path);
+  return read_tool_library_text(*text, path, unit);
 }
 
 Result<LibraryTool> tool_of_library(const std::vector<LibraryTool>& tools, int number) {

@@ -1,9 +1,11 @@
 // Tools out of a file that another program keeps: the tool table of LinuxCNC (.tbl), the tool library of Fusion
-// (.json), tool bits and libraries of FreeCAD (.fctb, .fctl). What such a file says becomes keys of a [[tool]]; what it
-// does not say is not invented.
+// (.json, .tools), tool bits and libraries of FreeCAD (.fctb, .fctl). What such a file says becomes keys of a [[tool]];
+// what it does not say is not invented.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/base/result.h"
@@ -17,17 +19,30 @@ struct LibraryTool {
   std::string name;      ///< for people
   toml::TomlTable keys;  ///< as a [[tool]] has them: mm, deg; each with its place in the file, where it is known
   std::vector<std::string> notes;  ///< what stands there and was not taken, and why
+  bool takes_unit = false;         ///< lengths without a unit were read in that of `LibraryUnit`
+  bool other_unit = false;         ///< lengths with a unit that is another than that of `LibraryUnit`
+  bool unit_is_open = false;       ///< nobody says the unit of its lengths: read as mm
 };
 
+/// The unit that somebody says for lengths of which the file states none.
+enum class LibraryUnit : std::uint8_t { none, mm, inch };
+/// Of its words "mm" and "inch".
+[[nodiscard]] LibraryUnit library_unit_of(std::string_view word);
+/// What settles it, for refusals: the key of a [[tool]], and the option of `new`.
+inline constexpr const char* kUnitKey = "say library_unit = \"mm\" or \"inch\" in the [[tool]] (new: --library-unit)";
+
 /// The formats by their endings, for messages.
-inline constexpr const char* kFormats = ".tbl (LinuxCNC), .json (Fusion), .fctb or .fctl (FreeCAD)";
+inline constexpr const char* kFormats = ".tbl (LinuxCNC), .json or .tools (Fusion), .fctb or .fctl (FreeCAD)";
 
 /// All milling tools of a file in its order. Errors: an ending that is none of `kFormats`; a file that cannot be read
-/// or is not of its format, with the line where it is known. Tools of kinds that no job has (drills, probes) are left
-/// out, unless they are all.
-[[nodiscard]] Result<std::vector<LibraryTool>> read_tool_library(const std::string& path);
-/// The same of text; tool bits that a .fctl names are read beside `path` and in ../Bit.
-[[nodiscard]] Result<std::vector<LibraryTool>> read_tool_library_text(const std::string& text, const std::string& path);
+/// or is not of its format, with the line where it is known; a unit that is not said. A tool table has none: the
+/// configurations beside it (.ini, LINEAR_UNITS) are asked, and what they or its numbers say of inches is refused until
+/// somebody says the unit. Tools of kinds that no job has (drills, probes) are left out, unless they are all.
+[[nodiscard]] Result<std::vector<LibraryTool>> read_tool_library(const std::string& path,
+                                                                 LibraryUnit unit = LibraryUnit::none);
+/// The same of text; tool bits that a .fctl names are read beside `path` and in ../Bit. Of a .tools, bytes.
+[[nodiscard]] Result<std::vector<LibraryTool>> read_tool_library_text(const std::string& text, const std::string& path,
+                                                                      LibraryUnit unit = LibraryUnit::none);
 
 /// The one with a number; of a file with a single tool without a number that one. Errors: none has it (the numbers that
 /// are there), two have it.

@@ -164,7 +164,7 @@ TEST(New, NeverReplacesAFile) {
 constexpr const char* kFusion = R"({"version": 36, "data": [
  {"type": "ball end mill", "description": "1 mm ball", "unit": "millimeters", "post-process": {"number": 4},
   "geometry": {"DC": 1, "LCF": 7, "LB": 27, "SFDM": 4, "NOF": 2, "assemblyGaugeLength": 97},
-  "holder": {"description": "ER11", "gaugeLength": 70, "segments": [{"height": 30, "lower-diameter": 11, "upper-diameter": 11}]}},
+  "holder": {"description": "ER11", "unit": "millimeters", "gaugeLength": 70, "segments": [{"height": 30, "lower-diameter": 11, "upper-diameter": 11}]}},
  {"type": "drill", "unit": "millimeters", "post-process": {"number": 8}, "geometry": {"DC": 5}}]})";
 
 /// A spur gear with these tools.
