@@ -36,6 +36,9 @@ constexpr double kWorstCondition = 1e4;
 /// A plane through the deviations of one tooth: points, and how evenly they must lie.
 constexpr std::size_t kLeastOfPlane = 9;
 constexpr double kLeastSpread = 0.02;
+/// Standard deviations of its own that a coefficient must have: of 28 that are noise, with 17 points more than numbers,
+/// one in a hundred fits lets one pass.
+constexpr double kOutOfNoise = 4.5;
 
 /// How many different values there are, each a step away from the one before.
 int levels_of(std::vector<double> values) {
@@ -56,6 +59,49 @@ Status covered(const std::vector<double>& measured, const std::vector<double>& n
   if (have.width() >= kLeastCover * all.width()) return Ok{};
   return fail("the points cover {:.0f} % of the {}, at least {:.0f} % are needed", 100 * have.width() / all.width(),
               what, 100 * kLeastCover);
+}
+
+/// Least squares without the columns that noise explains. What all of them leave of the points is their noise; one
+/// after the other, the column goes whose coefficient stands least out of it, while that is below `kOutOfNoise`
+/// standard deviations of its own. With A = Q R the points are not asked again: what a choice of columns leaves of them
+/// is what it leaves of Q' b.
+/// @param others  numbers that are fitted besides
+/// @param kept    so many of the first columns stay whatever they come to
+Eigen::VectorXd solve_out_of_noise(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr, const Eigen::VectorXd& b,
+                                   Eigen::Index others, Eigen::Index kept) {
+  using Eigen::MatrixXd, Eigen::VectorXd;
+  const Eigen::Index n = qr.rows(), width = qr.cols(), free = n - width - others;
+  VectorXd all = qr.solve(b);
+  if (free < 1) return all;
+  const VectorXd seen = qr.householderQ().adjoint() * b;
+  const double noise = std::sqrt(seen.tail(n - width).squaredNorm() / double(free));
+  const MatrixXd R = MatrixXd(qr.matrixQR().topRows(width).triangularView<Eigen::Upper>()) *
+                     MatrixXd(qr.colsPermutation()).transpose();
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index k = 0; k < width; ++k) columns.push_back(k);
+  while (true) {
+    const MatrixXd part = R(Eigen::all, columns);
+    const VectorXd c = part.householderQr().solve(seen.head(width));
+    const MatrixXd spread = (part.transpose() * part).inverse();
+    std::size_t least = columns.size();
+    double ratio = kOutOfNoise;
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      const auto at = Eigen::Index(k);
+      const double own = noise * std::sqrt(std::max(spread(at, at), 0.0));
+      if (columns[k] >= kept && own > 0 && std::abs(c[at]) < ratio * own) {
+        ratio = std::abs(c[at]) / own;
+        least = k;
+      }
+    }
+    if (least == columns.size()) {
+      if (Eigen::Index(columns.size()) == width) return all;
+      all.setZero();
+      for (std::size_t k = 0; k < columns.size(); ++k) all[columns[k]] = c[Eigen::Index(k)];
+      return all;
+    }
+    columns.erase(columns.begin() + std::ptrdiff_t(least));
+    if (columns.empty()) return VectorXd::Zero(width);
+  }
 }
 
 }  // namespace
@@ -151,16 +197,16 @@ void FlankCorrection::fit_series(std::span<const FlankDeviation> points) {
     A.row(k) = row;
     b[k] = -p.deviation_mm;
   }
-  const Eigen::VectorXd c = A.colPivHouseholderQr().solve(b);
+  const Eigen::VectorXd c = solve_out_of_noise(A.colPivHouseholderQr(), b, 0, 1);
   coefficients_.assign(c.data(), c.data() + c.size());
   const Eigen::VectorXd left = b - A * c;
-  residual_ = {points.size(),
-               profile_,
-               lead_,
-               b.cwiseAbs().maxCoeff(),
-               std::sqrt(b.squaredNorm() / double(n)),
-               left.cwiseAbs().maxCoeff(),
-               std::sqrt(left.squaredNorm() / double(n))};
+  residual_.points = points.size();
+  residual_.profile_degree = profile_;
+  residual_.lead_degree = lead_;
+  residual_.measured_max_mm = b.cwiseAbs().maxCoeff();
+  residual_.measured_rms_mm = std::sqrt(b.squaredNorm() / double(n));
+  residual_.residual_max_mm = left.cwiseAbs().maxCoeff();
+  residual_.residual_rms_mm = std::sqrt(left.squaredNorm() / double(n));
 }
 
 FlankCorrection::Offset FlankCorrection::at(double theta, double radius_mm) const {
@@ -245,7 +291,7 @@ Result<ScatteredFit> FlankCorrection::fit_teeth(std::span<const ScatteredDeviati
         "the points leave part of the flank open: a fit of degrees {} x {} has condition {:.3g}, at most {:g}; "
         "measure points spread over height and width, not along single lines",
         profile_, lead_, condition, kWorstCondition);
-  const Eigen::VectorXd shape = qr.solve(left);
+  const Eigen::VectorXd shape = solve_out_of_noise(qr, left, Eigen::Index(teeth.size()), 0);
   ScatteredFit out;
   double mean = 0;
   for (const auto& [tooth, sums] : teeth) {
@@ -273,8 +319,13 @@ void FlankCorrection::note_rest(std::span<const ScatteredDeviation> points, cons
     squares += off * off;
   }
   const double n = double(points.size());
-  residual_ = {points.size(),         profile_, lead_, b.cwiseAbs().maxCoeff(), std::sqrt(b.squaredNorm() / n), worst,
-               std::sqrt(squares / n)};
+  residual_.points = points.size();
+  residual_.profile_degree = profile_;
+  residual_.lead_degree = lead_;
+  residual_.measured_max_mm = b.cwiseAbs().maxCoeff();
+  residual_.measured_rms_mm = std::sqrt(b.squaredNorm() / n);
+  residual_.residual_max_mm = worst;
+  residual_.residual_rms_mm = std::sqrt(squares / n);
 }
 
 void FlankCorrection::note_middles(std::span<const ScatteredDeviation> points, const Eigen::VectorXd& rest,

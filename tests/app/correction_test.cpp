@@ -7,6 +7,7 @@
 #include "app/commands/run.h"
 #include "app/job/file.h"
 #include "app/job/measured_file.h"
+#include "app/job/measured_points.h"
 #include "app/process/face/proof.h"
 #include "app/process/gear_of_job.h"
 #include "cam/cut/swept_path.h"
@@ -232,6 +233,26 @@ TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
        }),
        "m.csv:6:9: error: zone 0, flank 1, row 0, column 4 lies"},
   };
+  // What a spreadsheet saves is the same grid.
+  const auto saved = [&](const std::string& separator, bool quotes, bool commas) {
+    std::string out = quotes ? "\"" : "";
+    for (const char letter : good) {
+      if (letter == ',') out += quotes ? "\"" + separator + "\"" : separator;
+      else if (letter == '\n') out += quotes ? "\"\n\"" : "\n";
+      else out += letter == '.' && commas ? ',' : letter;
+    }
+    return quotes ? out.substr(0, out.size() - 1) : out;
+  };
+  const auto plain = job::parse_measured(good, "m.csv", *c.gear);
+  for (const std::string& text :
+       {saved(",", true, false), saved(",", true, true), saved(";", false, false), saved(";", false, true),
+        saved(";", true, true), saved("\t", false, true), saved("  ", false, false), saved(" ", false, true),
+        "sep=;\n" + saved(";", false, true), saved(";", false, true) + ";;;;;;;;;;\n"}) {
+    ASSERT_TRUE(job::looks_like_grid(text)) << text.substr(0, 80);
+    const auto read = job::parse_measured(text, "m.csv", *c.gear);
+    ASSERT_TRUE(read) << text.substr(0, 80) << read.error().text();
+    EXPECT_EQ(read->deviation_mm, plain->deviation_mm);
+  }
   for (const auto& wrong : cases) {
     const auto read = job::parse_measured(wrong.text, "m.csv", *c.gear);
     ASSERT_FALSE(read) << wrong.message;
@@ -246,6 +267,57 @@ TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
   const auto absent = run_program({"correct", dir / "job.toml", "--measured", dir / "none.csv", "--out", dir / "out"});
   EXPECT_EQ(absent.exit_code, 4);
   EXPECT_EQ(run_program({"correct", dir / "job.toml", "--out", dir / "out"}).exit_code, 2);
+}
+
+TEST(Correction, ARefusalOfMeasuredFlanksNamesTheMeasurement) {
+  const TestDir dir;
+  write_file(dir / "job.toml", R"(schema = 1
+name = "near the undercut"
+verify = {gouge_tolerance = 0.003}
+[gear]
+type = "face_gear"
+teeth = 40
+module = 1.5
+module_plane = "transverse"
+pressure_angle = 20.0
+shaper_teeth = 20
+shaper_tip_radius = 0.45
+zone = [{helix_angle = 0.0, inner_radius = 29.5, outer_radius = 32.5}]
+[machine]
+file = "xyzac_large"
+[setup]
+origin = [12.0, -7.0, -40.0]
+axis = "up"
+work_offset = "G54"
+work_offset_at = [12.0, -7.0, -40.0]
+[[tool]]
+number = 1
+type = "ball_end_mill"
+diameter = 0.8
+flute_length = 4.5
+shank_diameter = 0.75
+length = 70.0
+holder = [[10.0, 10.0, 40.0]]
+stick_out = 14.0
+[[operation]]
+type = "finishing"
+tool = 1
+speed = 20000
+feed = 400.0
+scallop = 0.02
+chord_tolerance = 0.002
+)");
+  const Case c = read_case(dir / "job.toml");
+  write_file(dir / "bent.csv", measured_csv(grid_of(*c.gear, 5, 9), [](const inspection::InspectionPoint& p) {
+               return 0.1 * std::pow(p.row / 2.0 - 1, 2);  // 100 um of crowning along the profile
+             }));
+  const auto run = run_program({"correct", dir / "job.toml", "--measured", dir / "bent.csv", "--out", dir / "out"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_NE(
+      run.err.find("bent.csv: the flanks that answer it cannot be cut, the nominal ones can: it deviates by up to "
+                   "100.00 um"),
+      std::string::npos)
+      << run.err;
 }
 
 /// What a measuring machine hands out of `teeth` teeth: the grid with the process error, every tooth off its place.

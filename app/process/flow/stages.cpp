@@ -41,6 +41,30 @@ void begin_report(Run& run) {
                   most * 1000));
 }
 
+/// A refusal of flanks that answer a measurement: where the nominal ones are planned, the measurement is the cause.
+Diagnostic with_measurement(Run& run, const proof::ProofLimits& limits, const process::FlankGrid& grid,
+                            Diagnostic refused) {
+  if (!run.gear.correction || refused.kind != DiagnosticKind::refused_input) return refused;
+  auto nominal = make_process(run.job);
+  if (nominal.refused()) return refused;
+  const auto milling = nominal.value()->milling(run.machine, limits, grid, run.clock);
+  if (!milling->plan(run.clock, run.progress)) return refused;
+  std::string files;
+  double most = 0, scatter = 0;
+  for (const auto& row : run.gear.correction->rows) {
+    if (files.find(row.file) == std::string::npos) files += (files.empty() ? "" : ", ") + row.file;
+    most = std::max(most, row.fit.measured_max_mm);
+    scatter = std::max(scatter, row.fit.residual_rms_mm);
+  }
+  refused.message = fmt::format(
+      "{}: the flanks that answer it cannot be cut, the nominal ones can: it deviates by up to {:.2f} um, a scatter of "
+      "{:.2f} um (rms) left out. Where that is the measurement, measure again; where it is the gear, let the ring "
+      "begin "
+      "farther from the undercut. In detail: {}",
+      files, most * 1000, scatter * 1000, refused.message);
+  return refused;
+}
+
 /// Plans every operation and lets the gouge check pass each path. Nothing: done.
 std::optional<Diagnostic> plan_and_check(Run& run) {
   const Status planned = run.milling->plan(run.clock, run.progress);
@@ -241,7 +265,7 @@ std::optional<Diagnostic> plan_post_and_prove(Run& run, app::OutputDir& output, 
                                               const process::FlankGrid& grid) {
   begin_report(run);
   run.milling = run.gear.process->milling(run.machine, limits, grid, run.clock);
-  if (auto stopped = plan_and_check(run)) return stopped;
+  if (auto stopped = plan_and_check(run)) return with_measurement(run, limits, grid, std::move(*stopped));
   return post_and_prove(run, limits, output);
 }
 

@@ -66,6 +66,35 @@ TEST(FlankCorrection, HoldsAPolynomialExactlyAndStatesWhatIsLeft) {
   EXPECT_GT(noise->residual().residual_max_mm, 5e-4);
 }
 
+TEST(FlankCorrection, NoiseIsLeftOutAndShapeStays) {
+  const auto gear = gear_of(15, 0, 90);
+  const double theta_t = gear.rings()[0].surface.shaper.theta_t;
+  constexpr double kNoise = 1e-4;
+  std::mt19937 engine(7);
+  std::normal_distribution<double> noise(0, kNoise);
+  const auto fit = [&](const std::function<double(double, double)>& shape) {
+    const auto made = face_gear::FlankCorrection::fit(
+        field_on_grid(gear, 1, [&](double x, double y) { return shape(x, y) + noise(engine); }), theta_t);
+    EXPECT_TRUE(made);
+    return *made;
+  };
+  // A flank that stands off by 4 um all over: the target is as smooth as the nominal flank.
+  int bent = 0;
+  for (int k = 0; k < 40; ++k) {
+    const auto even = fit([](double, double) { return 0.004; });
+    EXPECT_NEAR(even.at(theta_t, 131.5).value, -0.004, 1e-3);
+    bent += even.at(theta_t, 131.5).d_theta != 0 || even.at(theta_t, 131.5).d_radius != 0;
+  }
+  EXPECT_LE(bent, 2) << "one of a hundred is expected";
+  // What is larger than the noise is followed within it.
+  const auto slope = fit(rough);
+  const auto exact = face_gear::FlankCorrection::fit(field_on_grid(gear, 1, rough), theta_t);
+  double off = 0;
+  for (const auto& p : field_on_grid(gear, 1, rough))
+    off = std::max(off, std::abs(slope.at(p.theta, p.radius_mm).value - exact->at(p.theta, p.radius_mm).value));
+  EXPECT_LT(off, 4 * kNoise);
+}
+
 TEST(FlankCorrection, DerivativesAreThoseOfTheValue) {
   const auto gear = gear_of(15, 0, 90);
   const auto fit =
