@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "app/report/svg/turned_text.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::report {
@@ -33,7 +34,7 @@ std::string joints_text(const machines::Machine& machine, const machines::Joints
   std::string text =
       fmt::format("X {:.3f} Y {:.3f} Z {:.3f}", joints.linear_mm.x(), joints.linear_mm.y(), joints.linear_mm.z());
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k)
-    text += fmt::format(" {} {:.3f}", machine.chain.rotary(k).letter, degrees(joints.rotary_rad[k]));
+    text += fmt::format(" {} {}", machine.chain.rotary(k).letter, svg::turned_text(degrees(joints.rotary_rad[k])));
   return text;
 }
 

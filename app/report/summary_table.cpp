@@ -5,6 +5,7 @@
 #include "app/base/units.h"
 #include "app/report/machine_moves.h"
 #include "app/report/run_report.h"
+#include "app/report/svg/turned_text.h"
 #include "geometry/base/angle.h"
 #include "machines/assumed.h"
 
@@ -34,9 +35,12 @@ void axis_rows(std::string& out, const RunReport& report) {
     const double f = axis.rotary ? degrees(1.0) : 1.0;
     const char* unit = axis.rotary ? "deg" : "mm";
     const bool stands = axis.max - axis.min < 1e-9;
+    const auto place = [&](double value) {
+      return axis.rotary ? svg::turned_text(degrees(value)) : fmt::format("{:.3f}", value);
+    };
     const std::string moves = stands
-                                  ? fmt::format("{:>10.3f} {:<16}", axis.min * f, std::string(unit) + ", stands still")
-                                  : fmt::format("{:>10.3f} .. {:>9.3f} {:<3}", axis.min * f, axis.max * f, unit);
+                                  ? fmt::format("{:>10} {:<16}", place(axis.min), std::string(unit) + ", stands still")
+                                  : fmt::format("{:>10} .. {:>9} {:<3}", place(axis.min), place(axis.max), unit);
     const std::string limits =
         axis.endless() ? "rolls over" : fmt::format("limits {:g} .. {:g}", axis.lower_limit * f, axis.upper_limit * f);
     row(out, fmt::format("axis {}", axis.letter), fmt::format("{}   {}", moves, limits));

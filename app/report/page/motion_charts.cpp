@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "app/report/svg/turned_text.h"
 #include "geometry/base/angle.h"
 #include "postproc/readback/run_time.h"
 
@@ -74,11 +75,14 @@ void add_axis(std::vector<svg::LineChart>& charts, AxisCurve& curve, char letter
                             curve.least, unit);
     return;
   }
+  const bool in_turns = rotary && curve.greatest - curve.least > svg::kTurnsFrom;
+  if (in_turns)
+    for (double& v : curve.position.y) v /= 360;
   svg::LineChart position, speed;
   position.title = fmt::format("{}, position", letter);
   speed.title = fmt::format("{}, speed while feeding", letter);
   position.x_label = speed.x_label = "time [min]";
-  position.y_label = fmt::format("{} [{}]", letter, unit);
+  position.y_label = fmt::format("{} [{}]", letter, in_turns ? "turns" : unit);
   speed.y_label = fmt::format("{} [{}/min]", letter, unit);
   position.plot_height = speed.plot_height = kAxisPlotHeight;
   position.series.push_back(std::move(curve.position));

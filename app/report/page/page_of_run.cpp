@@ -5,6 +5,7 @@
 #include "app/base/units.h"
 #include "app/report/page/tool_body.h"
 #include "app/report/svg/html_text.h"
+#include "app/report/svg/turned_text.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::page {
@@ -55,9 +56,12 @@ PageTable axis_table(const report::RunReport& r) {
                   {},
                   "Machine coordinates, over the whole program."};
   for (const auto& axis : r.axes) {
-    const double f = axis.rotary ? degrees(1.0) : 1.0;
-    const auto number = [&](double value) { return fmt::format("{:.3f}", value * f); };
-    const auto limit = [&](double value) { return axis.endless() ? "rolls over" : number(value); };
+    const auto number = [&](double value) {
+      return axis.rotary ? svg::turned_text(degrees(value)) : fmt::format("{:.3f}", value);
+    };
+    const auto limit = [&](double value) {
+      return axis.endless() ? "rolls over" : fmt::format("{:.3f}", axis.rotary ? degrees(value) : value);
+    };
     table.rows.push_back({std::string(1, axis.letter), number(axis.min), number(axis.max), limit(axis.lower_limit),
                           limit(axis.upper_limit), axis.rotary ? "deg" : "mm"});
   }

@@ -9,6 +9,7 @@
 #include "app/report/sheet/setup_drawings.h"
 #include "app/report/sheet/sheet_html.h"
 #include "app/report/svg/html_text.h"
+#include "app/report/svg/turned_text.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 #include "machines/assumed.h"
@@ -209,10 +210,14 @@ void axis_section(Sheet& sheet, const report::RunReport& report) {
   sheet.heading("Axis ranges, machine coordinates");
   sheet.begin_table({"axis", "least", "greatest", "lower limit", "upper limit", "unit"});
   for (const auto& axis : report.axes) {
-    const double f = axis.rotary ? degrees(1.0) : 1.0;
-    const auto limit = [&](double value) { return axis.endless() ? "rolls over" : millimetres(value * f); };
-    sheet.row({std::string(1, axis.letter), millimetres(axis.min * f), millimetres(axis.max * f),
-               limit(axis.lower_limit), limit(axis.upper_limit), axis.rotary ? "deg" : "mm"});
+    const auto number = [&](double value) {
+      return axis.rotary ? svg::turned_text(degrees(value)) : millimetres(value);
+    };
+    const auto limit = [&](double value) {
+      return axis.endless() ? "rolls over" : millimetres(axis.rotary ? degrees(value) : value);
+    };
+    sheet.row({std::string(1, axis.letter), number(axis.min), number(axis.max), limit(axis.lower_limit),
+               limit(axis.upper_limit), axis.rotary ? "deg" : "mm"});
   }
   sheet.end_table();
 }

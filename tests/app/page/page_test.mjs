@@ -194,6 +194,13 @@ const tests = {
     });
     assert.ok(off < 1e-9, `off by ${off}`);
     const picture = async () => Buffer.from(await (await page.$('#view')).screenshot()).toString('base64');
+    // Play goes through the whole program, not on from the moment that the page chose to show.
+    assert.ok(await page.evaluate(() => window.toothpathPage.moment > 11));
+    await page.click('#run');
+    assert.ok(await page.evaluate(() => window.toothpathPage.moment < 11));
+    await page.click('#run');
+    assert.deepEqual(await page.evaluate(() => [-127440.74, 725, -372.5, 0.001, -0.001].map(angle)),
+                     ['\u22120.74\u00b0 (\u2212354 turns)', '5.00\u00b0 (+2 turns)', '\u2212372.50\u00b0', '0.00\u00b0', '0.00\u00b0']);
     const before = await picture();
     await page.$eval('#moment', (e) => { e.value = 3; e.dispatchEvent(new Event('input')); });
     await settle(page);
@@ -215,6 +222,7 @@ const tests = {
     await page.select('#teeth-shown', 'first');
     await page.$eval('#moment', (e) => { e.value = 3; e.dispatchEvent(new Event('input')); });
     await page.click('#run');
+    assert.ok(await page.evaluate(() => window.toothpathPage.moment >= 3), 'on from the moment that a reader chose');
     await page.waitForFunction(() => window.toothpathPage.moment > 4, {timeout: 20000});
     await page.click('#run');
     await page.click('#scene-flank');

@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "app/report/svg/canvas.h"
+#include "app/report/svg/turned_text.h"
 
 namespace toothpath {
 namespace {
@@ -35,6 +36,12 @@ TEST(SvgPlot, TicksAreRoundAndInside) {
     EXPECT_TRUE(std::abs(digit - 1) < 1e-6 || std::abs(digit - 2) < 1e-6 || std::abs(digit - 5) < 1e-6) << step;
   }
   EXPECT_TRUE(svg::nice_ticks(1, 1, 5).empty());
+}
+
+TEST(SvgPlot, FarTurnsAreToldApart) {
+  EXPECT_EQ(svg::turned_text(-127440.74), "-0.740 (-354 turns)");
+  EXPECT_EQ(svg::turned_text(725, 1), "5.0 (+2 turns)");
+  EXPECT_EQ(svg::turned_text(-372.5), "-372.500");
 }
 
 TEST(SvgPlot, ALogarithmicScaleTurnsRatiosIntoLengths) {

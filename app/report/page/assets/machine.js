@@ -6,7 +6,7 @@ Object.assign(Page.prototype, {
     this.machine = new MachineView(this.view, scene);
     this.timelines = {first: new Timeline(scene, false), all: new Timeline(scene, true)};
     this.timeline = this.timelines.first;
-    Object.assign(this, {moment: this.cuttingMoment(Math.floor(this.timeline.length / 2)), running: false, onMachine: false});
+    Object.assign(this, {moment: this.cuttingMoment(Math.floor(0.3 * this.timeline.length), Math.ceil(0.7 * this.timeline.length)), momentIsOurs: true, running: false, onMachine: false});
     // A place of the gear above the table, where the program is in the middle; the eye in front, as the machinist stands.
     const state = this.timeline.at(Math.floor(this.moment)) || {joints: [0, 0, 0, 0, 0]};
     const place = Rigid.join(this.machine.places(state.joints)[0], this.machine.gear);
@@ -26,7 +26,7 @@ Object.assign(Page.prototype, {
     const on = (id, event, act) => byId(id).addEventListener(event, () => { act(); this.dirty = true; });
     on('scene-machine', 'click', () => this.showScene(true));
     on('scene-flank', 'click', () => this.showScene(false));
-    on('moment', 'input', () => { this.halt(); this.moment = Number(byId('moment').value); this.showMoment(); });
+    on('moment', 'input', () => { this.halt(); this.chooseMoment(Number(byId('moment').value)); });
     on('run', 'click', () => (this.running ? this.halt() : this.run()));
     on('whole-machine', 'change', () => {});
     on('teeth-shown', 'change', () => this.showTeeth(byId('teeth-shown').value, this.timeline.partAt(Math.floor(this.moment))));
@@ -101,7 +101,12 @@ Object.assign(Page.prototype, {
     if (!this.timeline.parts.some(is)) this.showTeeth('all', this.timeline.partAt(Math.floor(this.moment)));
     const i = this.timeline.parts.findIndex(is);
     this.halt();
-    if (i >= 0) this.moment = this.cuttingMoment(this.timeline.starts[i], this.timeline.starts[i] + this.timeline.parts[i].count);
+    if (i >= 0) this.chooseMoment(this.cuttingMoment(this.timeline.starts[i], this.timeline.starts[i] + this.timeline.parts[i].count));
+  },
+
+  /** A moment that a reader asked for: from there it plays on. */
+  chooseMoment(moment) {
+    Object.assign(this, {moment, momentIsOurs: false});
     this.showMoment();
   },
 
@@ -137,8 +142,7 @@ Object.assign(Page.prototype, {
     const s = this.atMoment(), {joints} = this.machine.scene, tool = this.data.tools[s.tool];
     byId('moment').value = this.moment;
     const words = [...joints].sort((a, b) => a.state - b.state).map((j) => {
-      const value = s.joints[j.state] * (j.rotary ? 180 / Math.PI : 1);
-      return `${j.letter} ${fixed(Math.abs(value) < 0.005 ? 0 : value, 2)}${j.rotary ? '\u00b0' : ''}`;
+      return `${j.letter} ${j.rotary ? angle(s.joints[j.state] * 180 / Math.PI) : fixed(s.joints[j.state], 2)}`;
     });
     const operation = this.paths.find((p) => p.index === s.operation);
     if (s.tooth >= 0) {
@@ -151,9 +155,10 @@ Object.assign(Page.prototype, {
     this.dirty = true;
   },
 
+  /** The whole program, but from a moment that a reader chose. */
   run() {
-    if (this.moment >= this.timeline.length - 1) this.moment = 0;
-    Object.assign(this, {running: true, clock: 0});
+    if (this.momentIsOurs || this.moment >= this.timeline.length - 1) this.moment = 0;
+    Object.assign(this, {running: true, clock: 0, momentIsOurs: false});
     byId('run').textContent = 'Stop';
   },
 

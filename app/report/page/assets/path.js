@@ -34,6 +34,7 @@ Object.assign(Page.prototype, {
     let at = Math.round(first + (last - first) * 0.5);
     for (let i = at; i <= last; i++) if (path.kind(i) === 2) { at = i; break; }
     this.showRecord(at);
+    this.recordIsOurs = true;
   },
 
   span() {
@@ -44,6 +45,7 @@ Object.assign(Page.prototype, {
   showRecord(i) {
     const path = this.path();
     if (!path) return;
+    this.recordIsOurs = false;
     this.state.record = i;
     byId('record').value = i;
     const [x, y, z] = path.tip(i), axis = path.toolAxis(i), line = path.line(i), p = path.passes[path.passOf(i)];
@@ -58,7 +60,7 @@ Object.assign(Page.prototype, {
 
   start() {
     const [first, last] = this.span();
-    if (this.state.record >= last) this.showRecord(first);
+    if (this.recordIsOurs || this.state.record >= last) this.showRecord(first);
     Object.assign(this, {playing: true, clock: 0, ahead: 0});
     byId('play').textContent = 'Stop';
   },

@@ -10,7 +10,14 @@ const kDeepOnly = [[0, [128, 12, 38]], [0.4, [196, 62, 60]], [0.72, [236, 150, 1
 const byId = (id) => document.getElementById(id);
 const minus = (text) => text.replace('-', '\u2212');
 const number = (v, digits = 3) => minus(String(Number(v.toPrecision(digits))));
-const fixed = (v, decimals) => minus(v.toFixed(decimals));
+const fixed = (v, decimals) => minus((Math.abs(v) < 0.5 * 10 ** -decimals ? 0 : v).toFixed(decimals));
+
+/** Degrees of a rotary; beyond two turns what is left of one, and the whole turns. */
+function angle(degrees) {
+  if (!(Math.abs(degrees) > 720)) return `${fixed(degrees, 2)}\u00b0`;
+  const turns = Math.trunc(degrees / 360);
+  return `${fixed(degrees - 360 * turns, 2)}\u00b0 (${minus(turns > 0 ? `+${turns}` : `${turns}`)} turns)`;
+}
 
 function colourAt(stops, t) {
   let k = 1;
