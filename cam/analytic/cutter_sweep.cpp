@@ -17,6 +17,7 @@ constexpr double kSearchPad = 1e-4;   // mm: sag of edges, by which two distance
 constexpr double kWreckShare =
     0.5;  // a ball whose centre is this near, in radii, is bounded by all that can be asked for
 constexpr int kCutterHalvings = 24;
+constexpr std::size_t kQueriesOfWreck = 1000;  // of a motion that is too deep: each of these costs the bound a quarter
 constexpr int kLooksAbove = 3;           // rows at which the whole flute above is looked at before each row is
 constexpr double kShortestPiece = 1e-6;  // mm: shorter pieces are not halved
 
@@ -82,6 +83,10 @@ bool CutterSweep::settled(double least, double seen, double slack, double arm) c
   const double here =
       std::max(seen, deepest <= tolerance_ ? worst_ : 0);  // beyond the tolerance its own place is wanted
   const double leeway = here > 50 * tolerance_ ? 0.25 * here : 0;
+  // The tool may slide along the part: the verdict stands, and how deep it is need not be known at any price.
+  const std::size_t spent = (queries_ - queries_before_) / kQueriesOfWreck;
+  if (spent > 0 && found_.measured_mm > tolerance_ && deepest <= (1 + 0.25 * double(spent)) * found_.measured_mm)
+    return true;
   return deepest <= 0 || deepest <= here + proof_ + leeway + m_->deviation_mm + arm * m_->axis_deviation;
 }
 
@@ -90,6 +95,7 @@ void CutterSweep::expect(double depth_mm) { worst_ = std::max(worst_, std::min(d
 CutterFinding CutterSweep::check(const path::ToolMotion& motion, const KnownDepths& known) {
   m_ = &motion;
   found_ = {};
+  queries_before_ = queries_;
   if (by_itself_) worst_ = 0;
   double least = 0;
   if (known.good(0)) {

@@ -105,7 +105,7 @@ class CutterSweep {
   CutterFinding found_;
   std::array<double, 2> part_bounds_{};
   double flute_leaves_ = INFINITY;  ///< how far above the part the flute was when it was followed no higher
-  std::size_t queries_ = 0;
+  std::size_t queries_ = 0, queries_before_ = 0;  ///< of all motions; of those before this one
 };
 
 }  // namespace toothpath::analytic

@@ -129,6 +129,25 @@ TEST_P(RandomMotions, TenfoldSamplingNeverExceedsTheBound) {
 INSTANTIATE_TEST_SUITE_P(Jobs, RandomMotions, testing::Values("spur", "conical"),
                          [](const auto& c) { return std::string(c.param); });
 
+// A tool that slides down along the end of the ring, a little too deep: told as that, in no endless time.
+TEST(CutterSweep, ALongSlideThatIsTooDeepEndsSoon) {
+  const auto& job = job_named("spur");
+  auto tool = job.tool(job.plan.paths.back().operation);
+  tool.flute_length_mm = tool.radius_mm() + 3;
+  const double R = tool.radius_mm(), depth = 0.02, x = job.gear.outer_radius() + R - depth;
+  const auto options = job.check_options();
+  analytic::CutterSweep sweep(*job.part, tool, options.limits.proof_mm, options.limits.gouge_mm);
+  path::ToolMotion m;
+  m.axis_from = m.axis_to = Vec3::UnitZ();
+  m.tip_from = Vec3(x, 0, job.gear.blank_top() + 5);
+  m.tip_to = Vec3(x, 0, job.gear.blank_top() - 150);
+  const auto found = sweep.check(m);
+  EXPECT_GT(found.measured_mm, options.limits.gouge_mm);
+  EXPECT_GE(found.bound_mm, found.measured_mm);
+  EXPECT_LT(found.bound_mm, 5 * found.measured_mm);
+  EXPECT_LT(sweep.queries(), 20000u);
+}
+
 // A control that may lean the tool by degrees: the bound covers every lean, and the search for it ends.
 TEST_P(RandomMotions, AWideToleranceOfTheAxisIsBoundedInFewDistances) {
   const auto& job = job_named(GetParam());
