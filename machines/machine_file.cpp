@@ -19,8 +19,9 @@ constexpr double kLongestToolChange = 3600;   // s
 constexpr double kLongestClamp = 60;          // s
 constexpr double kLeastTravel = 10.0;         // mm; less means metres
 constexpr double kLeastDirection = 1e-3;      // length of a direction as written
-constexpr double kLeastOffset = 1.0;          // mm; the largest offset of all table axes: less may mean metres ...
+constexpr double kLeastOffset = 1.0;          // mm; the largest offset of all rotaries: less may mean metres ...
 constexpr double kMeasuredOffset = 0.1;       // mm; ... but for this little, which is measured on axes that should meet
+constexpr double kElsewhere = 100.0;          // mm along an axis, to another point of it
 constexpr std::size_t kMostRotaries = 2;
 constexpr std::size_t kMostBlocks = 1000;                      // of one key
 constexpr double kLeastClearance = 0.1, kMostClearance = 500;  // mm above the tool setter
@@ -194,22 +195,37 @@ RotaryAxis read_rotary(toml::TableReader axis, char letter, bool in_table, const
   return out;
 }
 
-/// Where every offset of the table's axes is below a millimetre although one is more than what is left of axes that
-/// should meet, the file is in metres. Whoever means it can give the point elsewhere on its axis.
+/// Could this offset of a table's axis be one in metres? Then the axis would stand within the travels of X and Y.
+bool may_be_metres(const Vec3& point_mm, const std::array<LinearAxis, 3>& linear) {
+  for (int i = 0; i < 2; ++i) {
+    const LinearAxis& travel = linear[std::size_t(i)];
+    if (const double at = 1000 * point_mm[i]; at != 0 && (at < travel.min_mm || at > travel.max_mm)) return false;
+  }
+  return true;
+}
+
+/// Where every offset of the rotary axes is below a millimetre although one of the table's is more than what is left of
+/// axes that should meet, the file may be in metres. Whoever means it can give the point elsewhere on its axis.
 void refuse_offsets_in_metres(toml::TableReader& axes, const Machine& machine) {
   double largest = 0;
   const RotaryAxis* at = nullptr;
-  for (const RotaryAxis& axis : machine.chain.table)
-    if (const double reach = axis.point_mm.cwiseAbs().maxCoeff(); reach > largest) {
-      largest = reach;
-      at = &axis;
-    }
-  if (largest < kMeasuredOffset || largest >= kLeastOffset) return;
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
+    const RotaryAxis& axis = machine.chain.rotary(k);
+    if (machine.chain.in_table(k) && !may_be_metres(axis.point_mm, machine.chain.linear)) return;
+    const double reach = axis.point_mm.cwiseAbs().maxCoeff();
+    if (reach >= kLeastOffset) return;
+    if (!machine.chain.in_table(k) || reach <= largest) continue;
+    largest = reach;
+    at = &axis;
+  }
+  if (largest < kMeasuredOffset) return;
+  const Vec3 same = at->point_mm + kElsewhere * at->direction;
   if (auto axis = axes.required_table(letter_name(at->letter)))
     axis->refuse("point",
                  "{} = [{}, {}, {}]: the largest offset of the rotary axes, {} mm, is below {} mm; lengths are in mm, "
-                 "not metres",
-                 axis->name("point"), at->point_mm.x(), at->point_mm.y(), at->point_mm.z(), largest, kLeastOffset);
+                 "not metres. If it is in mm, name another point of that axis: [{:g}, {:g}, {:g}]",
+                 axis->name("point"), at->point_mm.x(), at->point_mm.y(), at->point_mm.z(), largest, kLeastOffset,
+                 same.x(), same.y(), same.z());
 }
 
 /// One axis of the chain: its table is missing, or read.

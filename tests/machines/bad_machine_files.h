@@ -69,7 +69,7 @@ inline constexpr BadFile kBadMachineFiles[] = {
      "m.toml:23:7: error: axes.X.max - axes.X.min = 0.6 mm of travel is below 10 mm; lengths are in mm, not metres\n"},
     {"78 table offset in metres", "point = [0.0, 0.0, -285.0]", "point = [0.0, 0.0, -0.285]",
      "m.toml:38:9: error: axes.A.point = [0, 0, -0.285]: the largest offset of the rotary axes, 0.285 mm, is below 1 "
-     "mm; lengths are in mm, not metres\n"},
+     "mm; lengths are in mm, not metres. If it is in mm, name another point of that axis: [100, 0, -0.285]\n"},
     {"69 infinite travel", "min = -300.0\nmax = 300.0", "min = -300.0\nmax = inf",
      "m.toml:23:7: error: axes.X.max = inf must be finite\n"},
     {"70 almost parallel rotary axes", "direction = [1.0, 0.0, 0.0]", "direction = [0.0, 0.0000005, 1.0]",

@@ -302,6 +302,25 @@ TEST(MachineFile, PivotInMetres) {
   EXPECT_EQ(good.machine->chain.head.at(0).pivot_length_mm(), 250);
 }
 
+// An axis that stands 0.4 mm off is a measured one wherever another length shows that the file is in mm: a pivot, or
+// travels that do not reach where the axis would stand in metres. Where nothing shows it, the message tells the way
+// out.
+TEST(MachineFile, AnAxisAFewTenthsOff) {
+  const auto off = [](const std::string& text, const char* point) {
+    return replaced(text, "point = [0.0, 0.0, 0.0]", std::string("point = ") + point);
+  };
+  std::string head = replaced(kMachine, "table = [\"C\", \"A\"]\nhead = []", "table = [\"C\"]\nhead = [\"A\"]");
+  head = replaced(head, "point = [0.0, 0.0, -285.0]", "pivot_length = 165.0");
+  EXPECT_EQ(messages(off(head, "[0.18, -0.4, 0.0]")), "");
+  EXPECT_EQ(messages(off(kMachine, "[0.18, -0.4, 0.0]")), "");  // A stands 285 mm below
+  const std::string flat = replaced(kMachine, "point = [0.0, 0.0, -285.0]", "point = [0.0, 0.05, 0.0]");
+  EXPECT_EQ(messages(off(flat, "[0.0, 0.41, 0.0]")), "");  // at 410 mm of Y: beyond its travel
+  EXPECT_EQ(messages(off(flat, "[0.2, 0.0, 0.0]")),
+            "m.toml:46:9: error: axes.C.point = [0.2, 0, 0]: the largest offset of the rotary axes, 0.2 mm, is below 1 "
+            "mm; lengths are in mm, not metres. If it is in mm, name another point of that axis: [0.2, 0, 100]\n");
+  EXPECT_EQ(messages(off(flat, "[0.2, 0.0, 100.0]")), "");
+}
+
 // The file of a shaper is refused as such, not for the keys that it cannot have.
 TEST(MachineFile, KindDecidesBeforeTheKeys) {
   const std::string data = TOOTHPATH_SOURCE_DIR "/machines/data/";
