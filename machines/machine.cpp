@@ -8,6 +8,7 @@ namespace toothpath::machines {
 namespace {
 
 constexpr double kUpright = 1e-9;  // sine of the lean of an upright axis
+constexpr double kCrosses = 1e-3;  // and the least sine between an axis and the table's face that it crosses
 
 /// The limit stands at every axis.
 bool stated(const KinematicChain& chain, double LinearAxis::*linear, double RotaryAxis::*rotary) {
@@ -38,6 +39,16 @@ std::optional<double> Machine::top_under(const Vec3& at) const {
     if (high <= at.z() && (!top || high > *top)) top = high;
   }
   return top;
+}
+
+Vec3 Machine::table_middle_mm() const {
+  const RotaryAxis& axis = chain.table.front();
+  Vec3 middle = axis.point_mm;
+  if (!table_face_mm) return middle;
+  if (std::abs(axis.direction.z()) > kCrosses)
+    middle += (*table_face_mm - middle.z()) / axis.direction.z() * axis.direction;
+  middle.z() = *table_face_mm;
+  return middle;
 }
 
 bool Machine::has_acceleration() const {

@@ -88,6 +88,7 @@ struct Machine {
   std::optional<double> tool_change_min;   ///< from cut to cut, when stated
   double max_cutting_feed = 0.0;           ///< mm/min
   double table_diameter_mm = 0.0;          ///< largest circle that fits on the table
+  std::optional<double> table_face_mm;     ///< Z of its face, machine coordinates, rotaries at zero, when stated
   std::optional<double> part_diameter_mm;  ///< largest part that turns on the rotary table, when stated
   std::optional<double> max_part_mass_kg;  ///< when stated
   double min_block_ms = 1.0;               ///< shortest block that the control keeps up with
@@ -117,6 +118,9 @@ struct Machine {
   /// Highest place, straight below `at` (machine coordinates, joints at zero), of the boxes and upright cylinders and
   /// cones that carry the work; mm. Nothing: none is stated there.
   [[nodiscard]] std::optional<double> top_under(const Vec3& at) const;
+  /// Middle of the table's face, all rotaries at zero: of the first rotary axis under the work the place at
+  /// `table_face_mm`, or its point where no face is stated. Only where a rotary axis carries the work.
+  [[nodiscard]] Vec3 table_middle_mm() const;
   /// Largest part that turns on the table: `part_diameter_mm` if stated, else `table_diameter_mm`.
   [[nodiscard]] double largest_part_mm() const { return part_diameter_mm.value_or(table_diameter_mm); }
 };

@@ -278,6 +278,7 @@ void read_limits(toml::TableReader limits, Machine& machine) {
       limits.number("cutting_feed", toml::Range::positive(kLargestSpeed, " mm/min")).value_or(0.0);
   machine.table_diameter_mm =
       limits.number("table_diameter", toml::Range::positive(kLargestLength, " mm")).value_or(0.0);
+  machine.table_face_mm = limits.optional_number("table_face", {-kLargestLength, kLargestLength, " mm"});
   machine.min_block_ms = limits.number("min_block_ms", {0.0, 1e4, " ms"}).value_or(0.0);
   machine.part_diameter_mm = limits.optional_number("part_diameter", toml::Range::positive(kLargestLength, " mm"));
   machine.max_part_mass_kg = limits.optional_number("part_mass", toml::Range::positive(1e6, " kg"));

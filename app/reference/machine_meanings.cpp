@@ -41,6 +41,10 @@ constexpr Meaning kMachineMeanings[] = {
     {"limits", "What the machine takes."},
     {"limits.cutting_feed", "Highest feed in the cut."},
     {"limits.table_diameter", "Largest circle that fits on the table."},
+    {"limits.table_face",
+     "Z of the table's face, machine coordinates, all rotaries at zero; left out: Z of the point of the first axis "
+     "under "
+     "the work."},
     {"limits.min_block_ms", "Shortest block that the control keeps up with."},
     {"limits.part_diameter", "Largest part that turns on the rotary table; left out: as table_diameter."},
     {"limits.part_mass", "Heaviest part; left out: any."},

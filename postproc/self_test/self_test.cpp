@@ -97,8 +97,8 @@ double asking_zero_deg(const machines::KinematicChain& chain, const Vec3& point)
   return std::round(degrees(std::min(kMostTurn, kShown / radius)) / kStep) * kStep;
 }
 
-/// Where the tip may stand: near the table's rotary axis, else in the middle of the travels; nearer to the axis as a
-/// second choice.
+/// Where the tip may stand: above the table near its rotary axis, else in the middle of the travels; nearer to the axis
+/// as a second choice.
 std::vector<Vec3> points_for(const machines::Machine& machine, double tool_length) {
   const machines::KinematicChain& chain = machine.chain;
   Vec3 low, high;
@@ -113,7 +113,7 @@ std::vector<Vec3> points_for(const machines::Machine& machine, double tool_lengt
       points.push_back({middle.x(), middle.y(), low.z() + share * (high.z() - low.z()) - tool_length});
     return points;
   }
-  const Vec3 centre = chain.table.front().point_mm;
+  const Vec3 centre = machine.table_middle_mm();
   const double radius = 0.5 * machine.table_diameter_mm;
   for (const double part : {0.3, 0.2, 0.1, 0.05})
     for (const double height : {60.0, 30.0, 100.0, 150.0, 10.0})
@@ -220,9 +220,15 @@ Result<SelfTest> plan_self_test(const machines::Machine& machine, const SelfTest
         if (!violation) return test;
         last = *violation;
       }
+  std::string face;
+  if (!machine.chain.table.empty())
+    face = fmt::format("; the table's face is taken to be at Z = {:.4f}, {}", machine.table_middle_mm().z(),
+                       machine.table_face_mm ? "limits.table_face"
+                                             : fmt::format("axes.{}.point: if it is not, state limits.table_face",
+                                                           machine.chain.table.front().letter));
   return fail_as(DiagnosticKind::verification,
-                 "no point near the table can be kept with {:g} deg of tilt and a bar of {:g} mm: {}",
-                 std::min(5.0, degrees(options.largest_tilt_rad)), lengths.back(), last);
+                 "no point near the table can be kept with {:g} deg of tilt and a bar of {:g} mm: {}{}",
+                 std::min(5.0, degrees(options.largest_tilt_rad)), lengths.back(), last, face);
 }
 
 }  // namespace toothpath::self_test

@@ -321,6 +321,20 @@ TEST(MachineFile, AnAxisAFewTenthsOff) {
   EXPECT_EQ(messages(off(flat, "[0.2, 0.0, 100.0]")), "");
 }
 
+TEST(MachineFile, FaceOfTheTable) {
+  machines::Machine m = *machines::read_machine_text(kMachine, "m.toml").machine;
+  EXPECT_EQ(m.table_middle_mm(), Vec3(0, 0, 0));
+  m = *machines::read_machine_text(
+           replaced(kMachine, "table_diameter = 500", "table_diameter = 500\ntable_face = -85.5"), "m.toml")
+           .machine;
+  EXPECT_EQ(m.table_middle_mm(), Vec3(0, 0, -85.5));
+  m.chain.table[0].direction = Vec3(0, 0.6, 0.8);  // leans: where it comes through the face
+  m.chain.table[0].point_mm = Vec3(1, 2, -5.5);
+  EXPECT_LT((m.table_middle_mm() - Vec3(1, 2 - 60, -85.5)).norm(), 1e-12);
+  EXPECT_EQ(messages(replaced(kMachine, "table_diameter = 500", "table_diameter = 500\ntable_face = nan")),
+            "m.toml:15:14: error: limits.table_face = nan must be finite\n");
+}
+
 // The file of a shaper is refused as such, not for the keys that it cannot have.
 TEST(MachineFile, KindDecidesBeforeTheKeys) {
   const std::string data = TOOTHPATH_SOURCE_DIR "/machines/data/";

@@ -129,10 +129,10 @@ std::string machine_drawing_svg(const machines::Machine& machine) {
   drawing.line({nose, nose - Vec3(0, 0, 0.5 * size)}, "stroke='#333' stroke-width='2'", true);
   drawing.label(nose, "G, gauge point", "#333");
   if (!chain.table.empty()) {
-    const machines::RotaryAxis& work = chain.table.front();
-    drawing.line(arc(work.point_mm, Vec3::UnitZ(), 0.5 * machine.table_diameter_mm, 0, 2 * kPi),
+    const Vec3 middle = machine.table_middle_mm();
+    drawing.line(arc(middle, Vec3::UnitZ(), 0.5 * machine.table_diameter_mm, 0, 2 * kPi),
                  "stroke='#555' stroke-width='1.5'");
-    drawing.label(work.point_mm + Vec3(0.5 * machine.table_diameter_mm, 0, 0),
+    drawing.label(middle + Vec3(0.5 * machine.table_diameter_mm, 0, 0),
                   fmt::format("table, diameter {:g}", machine.table_diameter_mm), "#555");
   }
   for (std::size_t k = 0; k < chain.rotary_count(); ++k) {

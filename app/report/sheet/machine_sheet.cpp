@@ -105,6 +105,7 @@ Facts facts_of(const machines::Machine& m, const std::vector<BodyBox>& boxes) {
   row("spindle", number(m.max_spindle_speed), "1/min", "spindle.max_speed");
   row("cutting feed", number(m.max_cutting_feed), "mm/min", "limits.cutting_feed");
   row("table diameter", number(m.table_diameter_mm), "mm", "limits.table_diameter");
+  if (m.table_face_mm) row("table face", "Z " + number(*m.table_face_mm), "mm", "limits.table_face");
   if (m.part_diameter_mm) row("largest part", number(*m.part_diameter_mm), "mm", "limits.part_diameter");
   if (m.max_part_mass_kg) row("heaviest part", number(*m.max_part_mass_kg), "kg", "limits.part_mass");
   row("shortest block", number(m.min_block_ms), "ms", "limits.min_block_ms");

@@ -162,6 +162,24 @@ TEST(SelfTest, AWrongGrantOfTheRotaryOffsetIsSeen) {
   }
 }
 
+// The tip stands above the table's face, wherever the file names the point of the axis.
+TEST(SelfTest, StandsAboveTheFaceOfTheTable) {
+  machines::Machine m = shipped("xyzac_trt.toml");
+  const auto before = self_test::plan_self_test(m);
+  ASSERT_TRUE(before) << before.error().message;
+  m.table_face_mm = m.chain.table[0].point_mm.z();
+  m.chain.table[0].point_mm.z() -= 900;  // another point of the same axis
+  const auto stated = self_test::plan_self_test(m);
+  ASSERT_TRUE(stated) << stated.error().message;
+  EXPECT_EQ(stated->point_mm, before->point_mm);
+  EXPECT_EQ(stated->tool_length_mm, before->tool_length_mm);
+  m.table_face_mm.reset();
+  const auto none = self_test::plan_self_test(m);
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("axes.C.point: if it is not, state limits.table_face"), std::string::npos)
+      << none.error().message;
+}
+
 TEST(SelfTest, RefusesWhatItCannotTest) {
   machines::Machine m = shipped("t600s.toml");
   EXPECT_NE(self_test::plan_self_test(m, {.tool_length_mm = 0}).error().message.find("tool length 0 mm"),
