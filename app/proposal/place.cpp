@@ -90,9 +90,10 @@ std::vector<ToolPlace> finger_places(double inner_mm, double outer_mm, double pi
 std::optional<Place> place_of(const machines::Machine& machine, const PartInSpace& part, double tool_length_mm) {
   const machines::KinematicChain& chain = machine.chain;
   const bool on_axis = turns_the_work(chain);
-  const Vec3 plate = on_axis ? chain.table.front().point_mm : Vec3::Zero();
+  const Vec3 plate = on_axis ? machine.table_middle_mm() : Vec3::Zero();
   const double below = part.up ? -part.z_min_mm : part.z_max_mm;  // of the origin, to the underside
-  const auto top = machine.top_under(Vec3(plate.x(), plate.y(), INFINITY));
+  auto top = machine.top_under(Vec3(plate.x(), plate.y(), INFINITY));
+  if (machine.table_face_mm) top = std::max(top.value_or(*machine.table_face_mm), *machine.table_face_mm);
   const double lowest = top.value_or(plate.z()) + kFixture + below;
   Vec3 origin(plate.x(), plate.y(), std::round(lowest));
 
