@@ -195,8 +195,10 @@ Result<std::vector<JointSolution>> KinematicChain::candidates(const TablePose& p
         angles[k] = lo <= hi ? std::vector<double>{std::clamp(free_angle_rad, lo, hi)} : std::vector<double>{};
       else angles[k] = windings(axis, branch.joints.rotary_rad[k], margin.rotary_rad);
       if (angles[k].empty() && reachable) {
-        reject(branch, fmt::format("{} = {:.4f} deg outside [{:.4f}, {:.4f}]", axis.letter,
-                                   degrees(branch.joints.rotary_rad[k]), degrees(lo), degrees(hi)));
+        const double wanted = branch.joints.rotary_rad[k];
+        reject(branch,
+               fmt::format("{} = {:.4f} deg outside [{:.4f}, {:.4f}]{}", axis.letter, degrees(wanted), degrees(lo),
+                           degrees(hi), windings(axis, wanted).empty() ? "" : margin_words(true, margin.rotary_rad)));
         reachable = false;
       }
     }
@@ -222,10 +224,11 @@ std::vector<LimitViolation> KinematicChain::violations(const Joints& joints, con
   std::vector<LimitViolation> found;
   // A joint put together from a word, an offset and a tool length may miss a limit that it stands on by their rounding.
   constexpr double kRoundOff = 1e-10;
-  const auto test = [&found](char letter, bool is_rotary, double value, double lo, double hi) {
+  const auto test = [&](char letter, bool is_rotary, double value, double lo, double hi) {
     if (value >= lo - kRoundOff && value <= hi + kRoundOff) return;
-    if (!(value >= lo)) found.push_back({letter, is_rotary, value, lo, false});
-    else if (!(value <= hi)) found.push_back({letter, is_rotary, value, hi, true});
+    const double kept = is_rotary ? margin.rotary_rad : margin.linear_mm;
+    if (!(value >= lo)) found.push_back({letter, is_rotary, value, lo, false, kept});
+    else if (!(value <= hi)) found.push_back({letter, is_rotary, value, hi, true, kept});
   };
   for (std::size_t i = 0; i < 3; ++i)
     test("XYZ"[i], false, joints.linear_mm[static_cast<Eigen::Index>(i)], linear[i].min_mm + margin.linear_mm,
@@ -238,8 +241,16 @@ std::vector<LimitViolation> KinematicChain::violations(const Joints& joints, con
 
 std::string LimitViolation::text() const {
   const double scale = rotary ? 180.0 / kPi : 1.0;
-  return fmt::format("{} = {:.4f} {} {} {:.4f}", letter, value * scale, rotary ? "deg" : "mm",
-                     above ? "exceeds" : "is below", limit * scale);
+  const bool inside = (above ? value - limit : limit - value) <= margin;
+  return fmt::format("{} = {:.4f} {} {} {:.4f}{}", letter, value * scale, rotary ? "deg" : "mm",
+                     above ? "exceeds" : "is below", limit * scale, inside ? margin_words(rotary, margin) : "");
+}
+
+std::string margin_words(bool rotary, double margin) {
+  if (rotary)
+    return fmt::format(": inside the limit, but nearer to it than limits.limit_margin_angle = {:.6g} deg",
+                       degrees(margin));
+  return fmt::format(": inside the limit, but nearer to it than limits.limit_margin = {:.6g} mm", margin);
 }
 
 std::vector<double> windings(const RotaryAxis& axis, double command_rad, double margin_rad) {

@@ -79,10 +79,12 @@ struct JointSolution {
 struct LimitViolation {
   char letter = 'X';
   bool rotary = false;
-  double value = 0.0;  ///< mm or rad
-  double limit = 0.0;  ///< the limit that is exceeded, margin already subtracted; mm or rad
-  bool above = true;   ///< value lies above the limit; else below it
-  /// "Y = 212.4183 mm exceeds 200.0000" or "A = 131.2000 deg is below -120.0000".
+  double value = 0.0;   ///< mm or rad
+  double limit = 0.0;   ///< the limit that is exceeded, margin already subtracted; mm or rad
+  bool above = true;    ///< value lies above the limit; else below it
+  double margin = 0.0;  ///< that was subtracted; mm or rad
+  /// "Y = 212.4183 mm exceeds 200.0000" or "A = 131.2000 deg is below -120.0000"; of a value that only the margin
+  /// excludes, the margin's key.
   [[nodiscard]] std::string text() const;
 };
 
@@ -159,6 +161,10 @@ struct KinematicChain {
   Vec3 gauge_shift(const std::array<double, 2>& rotary_rad) const;  ///< h of the head angles: gauge point minus J
   Result<std::vector<JointSolution>> one_rotary(const Vec3& axis) const;
 };
+
+/// Names the key of a margin, mm or rad, for a command that stands inside the limits of its axis but within the margin:
+/// ": inside the limit, but nearer to it than limits.limit_margin_angle = 0.01 deg".
+[[nodiscard]] std::string margin_words(bool rotary, double margin);
 
 /// command_rad + k * 360 deg for every whole k that lies in the limits minus margin, ascending; empty when there is
 /// none. Of an axis that rolls over: the one within half a turn of its zero.

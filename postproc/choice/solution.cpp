@@ -89,6 +89,17 @@ class Chooser {
     return *cached_;
   }
 
+  /// Where a rotary stands through a run that leaves it free: at its zero, or where that is outside its range at the
+  /// nearest tenth of a degree inside, else at the nearest command.
+  double free_angle(double zero, std::size_t k) const {
+    const RotaryRange& range = ranges_[k];
+    if (chain_.rotary(k).rollover || range.lower > range.upper) return zero;
+    const double nearest = std::clamp(zero, range.lower, range.upper);
+    if (nearest == zero) return zero;
+    const double tenths = degrees(nearest) * 10;
+    const double even = radians((zero < nearest ? std::ceil(tenths) : std::floor(tenths)) / 10);
+    return std::clamp(even, range.lower, range.upper) == even ? even : nearest;
+  }
   /// One pair followed through a run. Rotaries that a pole leaves free take the angle of the neighbour.
   std::optional<Chain> follow(const Run& run, int pair, Diagnostic& why) {
     Chain chain;
@@ -113,8 +124,10 @@ class Chooser {
         const bool is_free = chosen->free_rotary == static_cast<int>(k);
         if (i > run.first && free_until[k] < i)
           angles[k] = is_free ? chain.angles.back()[k] : nearest_turn(angles[k], chain.angles.back()[k]);
-        else if (is_free) free_until[k] = i + 1;
-        else
+        else if (is_free) {
+          angles[k] = free_angle(angles[k], k);
+          free_until[k] = i + 1;
+        } else
           for (auto& before : chain.angles) before[k] = angles[k];
       }
       chain.angles.push_back(angles);
@@ -153,10 +166,19 @@ class Chooser {
   /// Whole turns that keep the run inside the range of rotary k. Of an axis that rolls over all are the same.
   std::pair<int, int> turns(const Chain& c, std::size_t k) const {
     if (k >= count_ || chain_.rotary(k).rollover) return {0, 0};
+    return turns_within(c, k, ranges_[k]);
+  }
+  static std::pair<int, int> turns_within(const Chain& c, std::size_t k, const RotaryRange& range) {
     constexpr double slack = 1e-9;  // rad: a command on the limit itself is inside
-    const double lowest = std::ceil((ranges_[k].lower - slack - c.least[k]) / kTwoPi);
-    const double highest = std::floor((ranges_[k].upper + slack - c.greatest[k]) / kTwoPi);
+    const double lowest = std::ceil((range.lower - slack - c.least[k]) / kTwoPi);
+    const double highest = std::floor((range.upper + slack - c.greatest[k]) / kTwoPi);
     return {static_cast<int>(std::clamp(lowest, -1e6, 1e6)), static_cast<int>(std::clamp(highest, -1e6, 1e6))};
+  }
+  /// Where nothing but the margin keeps rotary k from a run: the words that name it.
+  std::string margin_alone(const Chain& c, std::size_t k) const {
+    const machines::RotaryAxis& axis = chain_.rotary(k);
+    const auto [low, high] = turns_within(c, k, {axis.min_rad, axis.max_rad});
+    return low <= high ? machines::margin_words(true, ranges_[k].lower - axis.min_rad) : "";
   }
 
   std::vector<State> states_of(const std::vector<Chain>& chains, const std::vector<Chain>* chains_before,
@@ -220,9 +242,9 @@ class Chooser {
         const auto [low, high] = turns(c, k);
         if (low <= high) continue;
         text += text.empty() ? "" : "; the other solution ";
-        text += fmt::format("{} = {:.4f} .. {:.4f} deg outside [{:.4f}, {:.4f}]", chain_.rotary(k).letter,
+        text += fmt::format("{} = {:.4f} .. {:.4f} deg outside [{:.4f}, {:.4f}]{}", chain_.rotary(k).letter,
                             degrees(c.least[k]), degrees(c.greatest[k]), degrees(ranges_[k].lower),
-                            degrees(ranges_[k].upper));
+                            degrees(ranges_[k].upper), margin_alone(c, k));
         break;
       }
     return fail_as(DiagnosticKind::verification, "operation {} records {} to {}: {}", path_.operation, run.first,

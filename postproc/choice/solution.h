@@ -22,9 +22,9 @@ struct RotaryRange {
 ///
 /// A pass is what lies between two rapids. Inside it pair and turn stay; between passes they may change, dynamic
 /// programming over the passes finds the quickest sequence (ties: less tilt, then less turn, then pair 1). Where the
-/// tool is parallel to the first rotary for the whole pass, that rotary stands at its zero; where it is so at some
-/// records only, it keeps the angle of its neighbour. A rotary that rolls over has no turns to choose: each pass begins
-/// within half a turn of the end of the one before.
+/// tool is parallel to the first rotary for the whole pass, that rotary stands at its zero, or as near to it as its
+/// range allows; where it is so at some records only, it keeps the angle of its neighbour. A rotary that rolls over has
+/// no turns to choose: each pass begins within half a turn of the end of the one before.
 /// @param table_from_gear directions of the gear frame in the table frame
 /// @param ranges of the two rotaries, margins taken off
 /// @param only_pair 1 or 2: that pair alone; 0: either

@@ -33,6 +33,14 @@ std::vector<double> commands_of(const machines::RotaryAxis& axis, double tilt, d
   return possible;
 }
 
+/// Zero, or where the axis may not stand there, the nearest whole degree at which it may.
+double least_command(const machines::RotaryAxis& axis, double margin) {
+  const double low = axis.min_rad + margin, high = axis.max_rad - margin;
+  if (axis.zero_rad < low) return radians(std::ceil(degrees(low)));
+  if (axis.zero_rad > high) return radians(std::floor(degrees(high)));
+  return axis.zero_rad;
+}
+
 std::string command_text(const machines::KinematicChain& chain, const Rotaries& rotaries) {
   std::string text;
   for (std::size_t k = 0; k < chain.rotary_count(); ++k) {
@@ -48,7 +56,7 @@ std::vector<SelfTestStation> stations_for(const machines::Machine& machine, doub
   const machines::KinematicChain& chain = machine.chain;
   const double margin = machine.limit_margin.rotary_rad;
   Rotaries zero{};
-  for (std::size_t k = 0; k < chain.rotary_count(); ++k) zero[k] = chain.rotary(k).zero_rad;
+  for (std::size_t k = 0; k < chain.rotary_count(); ++k) zero[k] = least_command(chain.rotary(k), margin);
   std::vector<SelfTestStation> stations;
   const auto add = [&](const Rotaries& rotaries) {
     if (stations.empty() || stations.back().rotary_rad != rotaries)

@@ -35,8 +35,9 @@ struct SelfTest {
   Vec3 point_mm = Vec3::Zero();  ///< of the tip: table frame, which is machine coordinates with all rotaries at zero
   double tool_length_mm = 0;     ///< gauge point to the tip of the bar
   double approach_mm = 0;        ///< the tip comes down to the point from this height above it
-  /// The first and the last stand at zero. Where the machine file grants that the transformation takes the rotary
-  /// offset of the frame, the last one asks for it: by what the tip moves there if it does not, 1 mm is aimed at.
+  /// The first and the last stand at zero, or as near to it as the limits allow. Where the machine file grants that the
+  /// transformation takes the rotary offset of the frame, the last one asks for it: by what the tip moves there if it
+  /// does not, 1 mm is aimed at.
   std::vector<SelfTestStation> stations;
   /// Joints of every block. `station` >= 0: the block ends at that station.
   struct Move {

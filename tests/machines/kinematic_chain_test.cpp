@@ -355,6 +355,26 @@ TEST(Candidates, UnreachablePoseNamesAxisValueAndLimit) {
   EXPECT_EQ(far.error().message, "no solution inside the limits: pair 1: Y = 212.4183 mm exceeds 200.0000");
 }
 
+// What the margin alone excludes says which key keeps it.
+TEST(Candidates, TheMarginIsNamed) {
+  machines::KinematicChain chain = ac_table();
+  chain.table[0].min_rad = 0, chain.table[0].max_rad = radians(360);
+  chain.table[1].min_rad = radians(-120), chain.table[1].max_rad = radians(0);
+  const auto none = chain.candidates({Vec3::Zero(), Vec3(0, std::sin(0.3), std::cos(0.3))}, 100);
+  ASSERT_FALSE(none);
+  EXPECT_NE(none.error().message.find("C = 0.0000 deg outside [0.0100, 359.9900]: inside the limit, but nearer to it "
+                                      "than limits.limit_margin_angle = 0.01 deg"),
+            std::string::npos)
+      << none.error().message;
+  const auto found = chain.violations({Vec3::Zero(), {radians(359.995), radians(-121)}});
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(
+      found[0].text(),
+      "C = 359.9950 deg exceeds 359.9900: inside the limit, but nearer to it than limits.limit_margin_angle = 0.01 "
+      "deg");
+  EXPECT_EQ(found[1].text(), "A = -121.0000 deg is below -119.9900");
+}
+
 TEST(CheckChain, RefusesWhatNoInverseCanServe) {
   machines::KinematicChain chain = ac_table();
   EXPECT_TRUE(machines::check_chain(chain));

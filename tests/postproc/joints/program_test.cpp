@@ -71,6 +71,26 @@ TEST(AxisProgram, EndsOfBlocksAreTheTurnedRecords) {
     }
 }
 
+// C in [0, 360] and a tool along its axis: C is free there and stands where it may, whichever way the teeth turn it.
+TEST(AxisProgram, AFreeRotaryStandsInsideItsLimits) {
+  for (const int sign : {1, -1})
+    for (const bool expand : {false, true}) {
+      machines::Machine m = trunnion();
+      m.chain.table[0].sign = sign;
+      m.chain.table[0].min_rad = 0;
+      m.chain.table[0].max_rad = radians(360);
+      const auto path = sample_path(0.0, 0.0);
+      const int z = 40;
+      const auto program = axis_program({path}, m, standing(), z, expand);
+      ASSERT_TRUE(program) << program.error().message;
+      EXPECT_EQ(program->loop, !expand);
+      const auto& c = program->ranges[3];
+      EXPECT_GE(c.min, m.limit_margin.rotary_rad);
+      EXPECT_LE(c.max, radians(360) - m.limit_margin.rotary_rad);
+      EXPECT_NEAR(c.max - c.min, radians(351), 1e-9);
+    }
+}
+
 // C of +-190 deg and a tooth that sways it by more than 20: no whole turn of its commands fits some teeth, the other
 // pair of angles does. Every record is met all the same, and neither rotary leaves its limits.
 TEST(AxisProgram, OtherPairServesTeethThatTheFirstDoesNotReach) {

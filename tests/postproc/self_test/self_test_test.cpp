@@ -180,6 +180,17 @@ TEST(SelfTest, StandsAboveTheFaceOfTheTable) {
       << none.error().message;
 }
 
+// C in [0, 360]: zero itself is nearer to the limit than the margin.
+TEST(SelfTest, BeginsInsideTheLimits) {
+  machines::Machine m = shipped("xyzac_trt.toml");
+  m.chain.table[0].min_rad = 0;
+  m.chain.table[0].max_rad = radians(360);
+  const auto test = self_test::plan_self_test(m);
+  ASSERT_TRUE(test) << test.error().message;
+  EXPECT_NEAR(test->stations.front().rotary_rad[0], radians(1), 1e-12);
+  for (const auto& move : test->moves) EXPECT_TRUE(m.chain.violations(move.joints, m.limit_margin).empty());
+}
+
 TEST(SelfTest, RefusesWhatItCannotTest) {
   machines::Machine m = shipped("t600s.toml");
   EXPECT_NE(self_test::plan_self_test(m, {.tool_length_mm = 0}).error().message.find("tool length 0 mm"),
