@@ -1,6 +1,7 @@
 #include "tests/fuzz/readers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 #include <sstream>
@@ -9,6 +10,11 @@
 #include "app/job/measured_file.h"
 #include "app/job/measured_points.h"
 #include "app/job/measured_setup.h"
+#include "app/probing/touch_file.h"
+#include "app/studies/dhfg.h"
+#include "app/studies/errors/head.h"
+#include "app/studies/errors/summary.h"
+#include "app/studies/trials/dhfg_summary.h"
 #include "app/tool_library/tool_library.h"
 #include "geometry/base/plain_text.h"
 #include "geometry/mesh/file.h"
@@ -108,6 +114,86 @@ ByteReader meridian_reader() {
             return fault_of(read ? std::vector<Diagnostic>{} : read.error(), read.has_value());
           },
           20};  // each writes a file
+}
+
+/// A grid of removals, beside a job that names it; what was read is laid on a flank.
+ByteReader grid_reader() {
+  static const TestDir dir;
+  static const std::string job =
+      file_text(kSource / "samples/spur_quick.toml") + "\n[[gear.modification]]\nkind = \"grid\"\nfile = \"g.csv\"\n";
+  std::string seed = "along,depth,removal\n";
+  for (int k = 0; k < 12; ++k) seed += fmt::format("{},{},0.0{}\n", 60 + 1.25 * (k % 4), k / 4 * 1.5, k);
+  return {"modification_grid",
+          "0123456789.,-+eE\n",
+          {seed},
+          [](std::string_view bytes) {
+            write_file(dir / "g.csv", std::string(bytes));
+            const auto read = job::parse_job(job, dir / "job.toml");
+            if (!read) return fault_of(read.error(), false);
+            const auto& all = std::get<face_gear::FaceGearParameters>(read.value().gear).modifications;
+            const modification::Rectangle on{4, 60, 65};
+            if (const auto refused = modification::refused(all, 0, on)) return fault_of(refused->diagnostic);
+            const modification::Field field(all, 1, 0, on);
+            for (const double depth : {0.0, 1.7, 4.0})
+              if (!std::isfinite(field.removal(depth, 62.3))) return std::string("a removal that is no number");
+            return std::string();
+          },
+          20};  // each writes a file
+}
+
+ByteReader touches_reader() {
+  return {"touches",
+          "0123456789.,;-+eETXYZ# \t\n",
+          {"# T X Y Z\n1 10.5 -3.25 40\n2;1.5e1;0;40.001\r\nT3 X1 Y2 Z3\n", "1,2,3,4\n"},
+          [](std::string_view bytes) { return fault_of(probing::parse_touches(bytes, "touches.txt")); }};
+}
+
+/// Shards of both studies in a directory of their own, merged and summed up.
+ByteReader shards_reader() {
+  static const TestDir dir;
+  trials::StudyFacts facts{"small", true, true, 5, true, {25, 26, 27}, {4, 5, 6}, {0.3, 0.4, 0.5},
+                           5e5,     0.65, 1e4,  3, 1};
+  trials::StudyFound found = room_for(facts);
+  for (std::size_t k = 0; k < found.trials.size(); ++k) found.trials[k].levels = trials::l9_trials()[k];
+  std::string dhfg = trials::head_of(facts, "k").line + "\n";
+  for (int k = 0; k < count_of(facts); ++k) dhfg += sample_line(facts, k, found) + "\n";
+  const std::string cost =
+      R"("shift_um":1,"rms_um":0.5,"deepest_um":1.0,"left_um":2,"gouge_um":1,"gouge_bound_um":1.1,"within":true)";
+  std::string costs =
+      R"({"study":"machine-errors","version":1,"key":"k","samples":4,"seed":1,"job":"j","machine":"m",)"
+      R"("teeth":60,"verified":true,"nominal":{)" +
+      cost +
+      R"(},"errors":[{"error":"A.pivot","size":5,"unit":"um","source":"s","meaning":"x"}]})"
+      "\n";
+  for (int k = 0; k < 4; ++k)
+    costs += fmt::format(R"({{"sample":{},"error":"{}","tooth":3,"magnitude":1.5,{}}})", k,
+                          k % 2 == 0 ? "A.pivot" : errors::kAll, cost) +
+              "\n";
+  return {"shards",
+          "{}[]\":,.+-0123456789etruefals\n",
+          {dhfg, costs},
+          [](std::string_view bytes) {
+            write_file(dir / "samples.1of1.jsonl", std::string(bytes));
+            const auto merged = samples::merge(dir.path());
+            if (!merged) return fault_of(merged);
+            if (merged->head.study == errors::kStudy) return fault_of(errors::summary_of(*merged));
+            if (merged->head.study != trials::kDhfg) return std::string();
+            const auto study = trials::study_of(*merged);
+            if (study) (void)summary_of(study->facts, study->found);
+            return fault_of(study);
+          },
+          20};  // each writes a file
+}
+
+ByteReader study_reader() {
+  auto seeds = files_of(kSource / "samples/studies");
+  seeds.emplace_back(
+      "schema = 1\nname = \"small\"\n[study]\nmodule = 5.0\npinion_teeth = [25, 26, 27]\n"
+      "ratio = [4, 5, 6]\nhelix_angle = [20.0, 22.0, 24.0]\n");
+  return {"study", kToml, std::move(seeds), [](std::string_view bytes) {
+            const auto read = studies::parse_dhfg_study(bytes, "study.toml");
+            return fault_of(read ? std::vector<Diagnostic>{} : read.error(), read.has_value());
+          }};
 }
 
 ByteReader measured_reader() {
@@ -254,8 +340,9 @@ std::vector<ByteReader> gearbox_readers() {
 }
 
 std::vector<ByteReader> all_readers() {
-  std::vector<ByteReader> readers = {job_reader(), machine_reader(), shaper_machine_reader(), meridian_reader(),
-                                     measured_reader()};
+  std::vector<ByteReader> readers = {job_reader(),      machine_reader(),  shaper_machine_reader(),
+                                     meridian_reader(), measured_reader(), grid_reader(),
+                                     touches_reader(),  shards_reader(),   study_reader()};
   for (const auto& group :
        {measured_points_readers(), tool_library_readers(), mesh_readers(), nc_readers(), gearbox_readers()})
     readers.insert(readers.end(), group.begin(), group.end());
