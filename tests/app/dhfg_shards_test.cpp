@@ -130,7 +130,7 @@ TEST(StudyDhfg, SamplesThatItDoesNotWriteAreRefused) {
     return message(merged_of(replaced(facts, from, to), nine, count));
   };
   const std::string at = "a.jsonl:1:1: error: ";
-  EXPECT_TRUE(message(merged_of("{}", {}, 0)).starts_with(at + "\"facts.equal_half_mm\" is missing:"));
+  EXPECT_TRUE(message(merged_of("{}", {}, 0)).starts_with(at + "\"facts.efforts\" is missing:"));
   EXPECT_TRUE(message(merged_of(facts, {}, 8)).starts_with(at + "\"samples\" = 8, and the facts of the study make 9"));
   EXPECT_TRUE(head("\"efforts\":0", "\"efforts\":-5", 9).starts_with(at + "\"facts.efforts\" = -5 of 9 samples"));
   EXPECT_TRUE(head("\"efforts\":0", "\"efforts\":2147483647", 9).starts_with(at + "\"facts.efforts\" = 2147483647"));
@@ -145,7 +145,7 @@ TEST(StudyDhfg, SamplesThatItDoesNotWriteAreRefused) {
     lines[0] = text;
     return message(merged_of(facts, lines, 9));
   };
-  EXPECT_TRUE(message(merged_of(facts, nine, 9)).starts_with("a.jsonl:2:1: error: \"found.R1_mm\" is missing:"));
+  EXPECT_TRUE(message(merged_of(facts, nine, 9)).starts_with("a.jsonl:2:1: error: \"found.L_p_mm\" is missing:"));
   EXPECT_TRUE(line("{}").starts_with("a.jsonl:2:1: error: \"found\" is missing"));
 }
 

@@ -200,7 +200,9 @@ TEST(New, ALibraryInAFolderWithQuotesIsNamed) {
   if (made.exit_code == 0) {
     EXPECT_NE(file_text(dir / "job.toml").find("library = \"my \\\"tools\\\"/lib.json\""), std::string::npos);
   }
-  const std::string latin = dir / "L\xf6ffel";
+  const std::string latin = dir /
+                            "L\xf6"
+                            "ffel";
   std::filesystem::create_directory(latin);
   write_file(latin + "/lib.json", kFusion);
   const Finished refused = run_new(with_tools(latin + "/lib.json"), dir / "other.toml");
