@@ -8,25 +8,23 @@
 namespace toothpath::line {
 namespace {
 
-constexpr int kHeights = 64;
+constexpr int kHeights = 64, kBlockHeights = 16;
+constexpr int kBlockPlaces = 8;  // pieces of a block
 
 /// Over the feet that lie in the strip and in the ring.
-double largest_at(const LineFit& fit, const LineRecord& record) {
+double largest_at(const LineFit& fit, const AxisLine<double>& axis, const Vec3& anchor, int heights) {
   const FlankTask& flank = fit.flank();
-  const auto start =
-      face_gear::invert_flank(flank.surface, flank.side, record.anchor.head<2>().norm(), record.anchor.z());
+  const auto start = face_gear::invert_flank(flank.surface, flank.side, anchor.head<2>().norm(), anchor.z());
   if (!start) return 0;
-  const Place<double> place{start->theta, start->B};
-  const double t_start = (record.anchor - record.axis.c_0).dot(record.axis.a);
-  const auto gap = fit.gap_along(record.axis, t_start, place);
+  const auto gap = fit.gap_along(axis, (anchor - axis.c_0).dot(axis.a), {start->theta, start->B});
   if (!gap || !gap->in_ring()) return 0;
   double most = 0;
-  for (int k = 0; k <= kHeights; ++k) {
-    const double t = gap->ring_from + (gap->ring_to - gap->ring_from) * k / kHeights;
+  for (int k = 0; k <= heights; ++k) {
+    const double t = gap->ring_from + (gap->ring_to - gap->ring_from) * k / heights;
     const auto& near = *std::min_element(gap->nodes.begin(), gap->nodes.end(), [&](const GapNode& a, const GapNode& b) {
       return std::abs(a.t - t) < std::abs(b.t - t);
     });
-    const auto node = fit.gap_at(record.axis, t, near.at);
+    const auto node = fit.gap_at(axis, t, near.at);
     if (!node) continue;
     const Strip& strip = fit.strip();
     if (node->z_foot > strip.top || (strip.bottom && node->z_foot < *strip.bottom)) continue;
@@ -35,18 +33,26 @@ double largest_at(const LineFit& fit, const LineRecord& record) {
   return most;
 }
 
+/// Tip and axis of a block go straight.
+double largest_between(const LineFit& fit, const LineRecord& a, const LineRecord& b, double w) {
+  const double r_0 = fit.law().r_0;
+  AxisLine<double> axis;
+  axis.a = ((1 - w) * a.axis.a + w * b.axis.a).normalized();
+  axis.c_0 = (1 - w) * (a.axis.c_0 - r_0 * a.axis.a) + w * (b.axis.c_0 - r_0 * b.axis.a) + r_0 * axis.a;
+  return largest_at(fit, axis, (1 - w) * a.anchor + w * b.anchor, kBlockHeights);
+}
+
 }  // namespace
 
-double largest_gap(const face_gear::FaceGear& gear, const tool::Profile& tool, const LinePlan& plan) {
-  std::vector<double> most(plan.passes.size(), 0.0);
-  tbb::parallel_for(std::size_t{0}, plan.passes.size(), [&](std::size_t k) {
-    const LinePass& pass = plan.passes[k];
-    const auto flank = flank_task(gear, pass.zone, pass.side);
-    if (!flank) return;
-    const LineFit fit(*flank, *tool.law(), strips_of(*flank, plan.strips)[std::size_t(pass.strip)]);
-    for (const LineRecord& record : pass.records) most[k] = std::max(most[k], largest_at(fit, record));
+double largest_gap(const LineFit& fit, const LinePass& pass) {
+  std::vector<double> most(pass.records.size(), 0.0);
+  tbb::parallel_for(std::size_t{0}, most.size(), [&](std::size_t k) {
+    const LineRecord& here = pass.records[k];
+    most[k] = largest_at(fit, here.axis, here.anchor, kHeights);
+    for (int piece = 1; piece < kBlockPlaces && k > 0; ++piece)
+      most[k] = std::max(most[k], largest_between(fit, pass.records[k - 1], here, double(piece) / kBlockPlaces));
   });
-  return *std::max_element(most.begin(), most.end());
+  return most.empty() ? 0 : *std::max_element(most.begin(), most.end());
 }
 
 }  // namespace toothpath::line

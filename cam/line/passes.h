@@ -75,6 +75,7 @@ struct LinePass {
   std::vector<StationFigures> stations;  ///< those with a foot in the ring
   std::vector<LineRecord> records;
   double misfit_mm = 0;   ///< worst of all stations and records, smoothing included, bias not
+  double left_mm = 0;     ///< largest gap as it is cut, looked at more densely (misfit.h): bias and blocks in it
   double best_mm = 0;     ///< worst of the poses alone, over the full stations
   double chord_mm = 0;    ///< worst seen within a block, as `PassOptions::chord_mm` counts
   double contact_mm = 0;  ///< way of the contact

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "cam/line/misfit.h"
 #include "cam/tool/body.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
@@ -260,6 +261,12 @@ Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::
   }
   if (plan.passes.empty() && least == INFINITY && refused) return *refused;
   if (plan.passes.empty()) return fail("{}", missed(o, choices, best, least));
+  for (LinePass& pass : plan.passes) {
+    const auto flank = std::find_if(flanks.begin(), flanks.end(),
+                                    [&](const FlankTask& f) { return f.zone == pass.zone && f.side == pass.side; });
+    pass.left_mm =
+        largest_gap(LineFit(*flank, *tool.law(), strips_of(*flank, plan.strips)[std::size_t(pass.strip)]), pass);
+  }
   plan.path.operation = o.operation;
   plan.path.operation_type = "line_milling";
   plan.path.tool = o.tool;

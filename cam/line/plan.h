@@ -60,7 +60,12 @@ struct LinePlan {
                                  ///< order flanks otherwise
   int strips = 1;
   Rotaries rotaries = Rotaries::both;
-  double misfit_mm = 0;          ///< worst of the passes
+  double misfit_mm = 0;  ///< worst of the passes
+  [[nodiscard]] double left_mm() const {
+    double most = 0;
+    for (const LinePass& pass : passes) most = std::max(most, pass.left_mm);
+    return most;
+  }
   double least_feed_mm_min = 0;  ///< of the contact, in the slowest block
 };
 

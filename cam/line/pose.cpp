@@ -183,7 +183,12 @@ std::optional<GapLine> LineFit::gap_along(const AxisLine<double>& axis, double t
   };
   const auto first = part(kRim * flank_.module_mm, line.t_from, line.t_to);
   if (first == feet.end()) return line;
-  if (part(0, line.ring_from, line.ring_to) == feet.end()) line.ring_from = line.ring_to = line.t_from;
+  if (part(0, line.ring_from, line.ring_to) == feet.end()) {
+    // The line has a corner of the ring alone, at an end of the domain: rounding puts it outside.
+    const auto from = gap_at(axis, line.t_from, first->at), to = gap_at(axis, line.t_to, feet.back().at);
+    if (!from || !to) return {};
+    line.ring_from = line.ring_to = inside(*from, 0) > inside(*to, 0) ? line.t_from : line.t_to;
+  }
   std::vector<double> splits{line.t_from, line.ring_from, line.ring_to, line.t_to};
   const auto below_top = [&](const GapNode& q) { return strip_.top - q.z_foot; };
   if (strip_.top < flank_.z_tip - kExactEnd)

@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "app/process/ledger_sources.h"
-#include "cam/line/misfit.h"
-#include "cam/tool/cutters.h"
 #include "geometry/base/tolerances.h"
 
 namespace toothpath::face {
@@ -13,6 +11,7 @@ namespace {
 
 constexpr double kPivotShare = 1.8;  // of a pivot error, in tooth thickness: docs/line_milling.md
 constexpr double kTouch = 1e-6;      // mm: a record whose ball is this near to a patch touches it
+constexpr double kNodesSee = 1.005;  // of a misfit: planned poses are looked at in few heights
 
 struct Planned {
   double solve_mm = 0,
@@ -76,8 +75,8 @@ void add_side(const MilledGear& milled, std::size_t n, double bias_mm, Finished&
   const tool::ToolAssembly& tool = milled.tools[std::size_t(milled.plan.paths[n].tool)];
   out.side = n;
   out.lever_mm = std::max(out.lever_mm, contact_top(plan, tool));
-  out.misfit_planned_mm = plan.misfit_mm + bias_mm;
-  out.misfit_mm = line::largest_gap(milled.part.gear(), tool::profile_of(tool), plan);
+  out.misfit_planned_mm = kNodesSee * plan.misfit_mm + bias_mm + milled.plan.operations[n].chord_mm;
+  out.misfit_mm = plan.left_mm();
   out.chord_planned_mm = std::max(out.chord_planned_mm, milled.operations[n].chord_tolerance_mm);
   out.chord_mm = std::max(out.chord_mm, milled.plan.operations[n].chord_mm);
 }
@@ -152,7 +151,8 @@ std::vector<proof::LedgerEntry> ledger(const MilledGear& milled, const joints::A
                                "middles of the blocks between touching records"));
   if (f.side)
     out.push_back(process::entry(proof::ErrorSource::line_misfit, f.misfit_planned_mm, f.misfit_mm,
-                                 "gap of the side at all records, 64 heights each, smoothing and bias in it"));
+                                 "gap of the side at all records, 64 heights each, and between them; smoothing, bias "
+                                 "and chord in it"));
   const bool asked = scallop.requested_mm > 0;
   if (f.balls)
     out.push_back(process::entry(proof::ErrorSource::scallop, f.scallop_mm,
