@@ -61,8 +61,10 @@ RidgeResult highest_ridge(const bevel_gear::BevelGear& gear, std::span<const Fin
     if (std::max(f1, f2) > row.height) row.height = std::max(f1, f2), row.azimuth = f1 > f2 ? x1 : x2;
     row.points += 24;
   });
+  out.least_mm = rows.front().height;
   for (const auto& row : rows) {
     out.points += row.points;
+    out.least_mm = std::min(out.least_mm, row.height);
     if (row.height > out.reached_mm)
       out.reached_mm = row.height, out.cone_distance_mm = row.ell, out.azimuth_rad = row.azimuth;
   }

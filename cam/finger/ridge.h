@@ -11,6 +11,7 @@ namespace toothpath::finger {
 struct RidgeResult {
   double requested_mm = 0;                       ///< smallest ridge that an operation asks for; 0: none asks
   double reached_mm = 0;                         ///< highest, after all operations
+  double least_mm = 0;                           ///< of the highest of each station along the face the lowest
   double cone_distance_mm = 0, azimuth_rad = 0;  ///< where
   std::size_t points = 0;
 };

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "app/base/units.h"
 #include "cam/finger/teeth.h"
 #include "geometry/base/angle.h"
 
@@ -104,6 +105,16 @@ report::Finding ridge_of(const finger::RidgeResult& ridge) {
                      {"reached", ridge.reached_mm},
                      {"cone_distance", ridge.cone_distance_mm},
                      {"azimuth_deg", degrees(ridge.azimuth_rad)}};
+  return finding;
+}
+
+/// The ridges are the cusps of these passes: the walls are made in one.
+report::Finding scallop_of(const finger::RidgeResult& ridge) {
+  report::Finding finding;
+  finding.key = "scallop_um";
+  finding.details = {{"requested", app::um(ridge.requested_mm)},
+                     {"reached_min", app::um(ridge.least_mm)},
+                     {"reached_max", app::um(ridge.reached_mm)}};
   return finding;
 }
 
@@ -205,7 +216,10 @@ void BevelGearCheck::judge(process::ProgramProof& program, app::StageClock& cloc
   if (finisher(job_)) program.finished = result.finished;
   program.surface = std::move(result.walls);
   program.directions = directions_of(gear_, job_, program, result.tilt_rad, moving);
-  if (result.ridge.points > 0) program.findings.push_back(ridge_of(result.ridge));
+  if (result.ridge.points > 0) {
+    program.findings.push_back(ridge_of(result.ridge));
+    program.findings.push_back(scallop_of(result.ridge));
+  }
   if (!program.directions.empty()) program.findings.push_back(tilt_of(gear_, moving));
 }
 
