@@ -374,6 +374,19 @@ class Meter {
       slack_ = std::max(slack_, 0.5 * line_step_ * rise + op.chord_tolerance_mm);
     }
     out_.finished.bound_mm = out_.finished.max_mm + slack_;
+    for (const path::Region region : path::kRegions)
+      if (!by_side(region))
+        out_.finished.bound_mm =
+            std::max(out_.finished.bound_mm, along_normal(out_.finished_in_mm[region] + slack_, ball_in(region)));
+  }
+
+  /// What stands along the normal where no more than `e` stands towards the nearest ball: the two are apart at a crest,
+  /// where the ball that touched the surface at the distance s left e = sqrt(R^2 + s^2) - R and stands R - sqrt(R^2 -
+  /// s^2) above. Balls that do not meet above the crest leave whatever there was.
+  [[nodiscard]] double along_normal(double e, double R) const {
+    const double square = R * R - 2 * R * e - e * e;
+    if (!(e > 0)) return e;
+    return square > 0 ? R - std::sqrt(square) : std::max(e, o_.cap_mm);
   }
 
   void summarise_cusps() {

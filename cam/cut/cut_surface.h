@@ -38,7 +38,8 @@ struct CutSurface {
 
 /// `motions`: those of tooth 0 are used. Excess at a point p: the least, over all moves so far, of (distance from p to
 /// the ball-centre path - ball radius); > 0 material left, < 0 a gouge. `finished.bound_mm` adds to the greatest value
-/// seen what a cusp can rise between two samples of a scallop line and the asked chord tolerance.
+/// seen what a cusp can rise between two samples of a scallop line and the asked chord tolerance, and is meant along
+/// the normal: a crest h of a ball of radius R stands h^2 / R higher there than its distance from the ball.
 [[nodiscard]] CutSurface measure_cut_surface(const analytic::GearDistance& part,
                                              const std::vector<path::ToolMotion>& motions,
                                              const std::vector<path::MillingOperation>& operations,

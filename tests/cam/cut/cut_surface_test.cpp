@@ -1,6 +1,8 @@
 // What the programs leave: the measured cut surface against dense sampling, and the promises of the planner.
 #include "cam/cut/cut_surface.h"
 
+#include "cam/cut/swept_tool.h"
+#include "cam/cut/zone_places.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
 namespace toothpath {
@@ -68,6 +70,40 @@ TEST(CutSurface, ASmallerBallShowsUp) {
   const auto smaller = cut::measure_cut_surface(*job.part, job.motions(), job.operations, tools);
   EXPECT_GT(smaller.finished.min_mm + 1e-6, surface(job, job.motions()).finished.min_mm);
   EXPECT_GT(smaller.finished.max_mm, surface(job, job.motions()).finished.max_mm + 0.004);
+}
+
+// High cusps of small balls: between the samples, and along the normal, where a crest stands higher than it is far from
+// the balls. Brute force: from places of the surface outwards until a ball has been there.
+TEST(CutSurface, TheBoundHoldsAlongTheNormal) {
+  for (const auto& [diameter, scallop] : {std::pair(0.44, 0.03), {0.6, 0.04}}) {
+    auto gear = test::small_spur();
+    gear.zones[0].outer_radius_mm = gear.zones[0].inner_radius_mm + 1.5;
+    const auto job = test::planned(gear, {test::ball_mill(diameter, 5.2, 0.95 * diameter, 16, 10)},
+                                   {test::finishing(0, scallop, 6e-4)});
+    const auto cut = surface(job, job.motions());
+    const double R = 0.5 * diameter;
+    const cut::Removed removed(job.motions(), tool::proof_tool(job.tools[0]), job.gear.blank_top());
+    const cut::ZonePlaces places(*job.part, 0);
+    double highest = 0;
+    for (const double share : {0.0, 0.07, 0.31, 0.55, 0.83, 1.0}) {
+      const double r = places.radius(share);
+      for (int piece = 0; piece < face_gear::kSpacePieces; ++piece) {
+        const auto [from, to] = places.range(face_gear::SpacePiece(piece), r);
+        for (int k = 0; k <= 500; ++k) {
+          const auto s = places.at(from + (to - from) * k / 500, r);
+          if (!s) continue;
+          const auto& [p, n] = std::pair(s->contact.p, s->contact.n);
+          double height = removed.excess(p, 1);
+          if (height < 0.8 * highest || job.part->nearest(p + R * n, R + 0.01).distance < R - 1e-4) continue;
+          for (double step = height; step > 1e-7; height += step) step = removed.excess(p + height * n, 1);
+          highest = std::max(highest, height);
+        }
+      }
+    }
+    EXPECT_GT(highest, scallop) << diameter;
+    EXPECT_LE(highest, cut.finished.bound_mm) << diameter;
+    EXPECT_LE(cut.finished.bound_mm, 1.25 * highest) << diameter;
+  }
 }
 
 // Where the ball is about to touch a second wall, that wall is no second opinion about the first.
