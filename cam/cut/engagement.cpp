@@ -20,9 +20,13 @@ struct PointRing {
 constexpr double kChipCounts =
     0.5;  // of the largest chip: the tip of a ball that sinks touches all around, and cuts little
 constexpr double kPlaces = 0.2;  // of the largest radius, between the places of a motion that are looked at
+// Of an overload: places, rings, and directions about the feed of which the outer ones have half the chip.
+constexpr double kLoadPlaces = 0.5, kLoadRings = 0.35, kLoadHeights = 2;
+constexpr int kLoadDirections = 3;  // on either side
 
-std::vector<PointRing> rings_of(const tool::Meridian& meridian) {
-  const double longest = kEngagementStep * meridian.largest_radius();
+/// @param step  between rings, of the largest radius
+std::vector<PointRing> rings_of(const tool::Meridian& meridian, double step) {
+  const double longest = step * meridian.largest_radius();
   std::vector<PointRing> out;
   for (const tool::MeridianPiece& piece : meridian.pieces()) {
     const double length = (piece.to - piece.from).norm() * (piece.bend != 0 ? 0.5 * kPi : 1);
@@ -36,16 +40,45 @@ std::vector<PointRing> rings_of(const tool::Meridian& meridian) {
   return out;
 }
 
+/// What stands while motions are made one after the other.
+class Stock {
+ public:
+  Stock(const std::vector<path::ToolMotion>& motions, const EngagementQuery& q)
+      : q_(q), own_(cuts_of(motions), q.cutting, q.top_mm) {}
+
+  /// Has anything cut within `least_mm` of this place, once the first `done` motions that cut were made?
+  [[nodiscard]] bool stands(const Vec3& p, std::size_t done, double least_mm) const {
+    if (!q_.in_blank(p)) return false;
+    for (const Removed* removed : q_.before)
+      if (removed->excess(p, least_mm) < least_mm) return false;
+    return own_.excess_after(done, p, least_mm) >= least_mm;
+  }
+  /// Of every motion, how many ahead of it cut.
+  static std::vector<std::size_t> done_before(const std::vector<path::ToolMotion>& motions) {
+    std::vector<std::size_t> done(motions.size(), 0);
+    for (std::size_t k = 1; k < motions.size(); ++k) done[k] = done[k - 1] + (motions[k - 1].rapid ? 0 : 1);
+    return done;
+  }
+
+ private:
+  static std::vector<path::ToolMotion> cuts_of(std::vector<path::ToolMotion> motions) {
+    std::erase_if(motions, [](const path::ToolMotion& m) { return m.rapid; });
+    return motions;
+  }
+
+  const EngagementQuery& q_;
+  SweptTool own_;
+};
+
 class Along {
  public:
   Along(const std::vector<path::ToolMotion>& motions, const EngagementQuery& q)
-      : motions_(motions), q_(q), rings_(rings_of(q.mill.cutting())), own_(cuts_of(motions), q.cutting, q.top_mm) {
+      : motions_(motions), q_(q), rings_(rings_of(q.mill.cutting(), kEngagementStep)), stock_(motions, q) {
     for (int k = 0; k < int(2 * kPi / kEngagementStep); ++k) around_.push_back(k * kEngagementStep);
   }
 
   std::vector<Engaged> run() const {
-    std::vector<std::size_t> done(motions_.size(), 0);  // motions that cut, before each
-    for (std::size_t k = 1; k < motions_.size(); ++k) done[k] = done[k - 1] + (motions_[k - 1].rapid ? 0 : 1);
+    const std::vector<std::size_t> done = Stock::done_before(motions_);
     std::vector<Engaged> out(motions_.size());
     WorkShare share{double(motions_.size())};
     tbb::parallel_for(std::size_t{0}, motions_.size(), [&](std::size_t k) {
@@ -56,11 +89,6 @@ class Along {
   }
 
  private:
-  static std::vector<path::ToolMotion> cuts_of(std::vector<path::ToolMotion> motions) {
-    std::erase_if(motions, [](const path::ToolMotion& m) { return m.rapid; });
-    return motions;
-  }
-
   [[nodiscard]] Engaged worst(const path::ToolMotion& m, std::size_t done) const {
     Engaged most;
     const double way = (m.tip_to - m.tip_from).norm();
@@ -80,7 +108,7 @@ class Along {
       for (const double a : around_) {
         const Vec3 out = std::cos(a) * u + std::sin(a) * v;
         const double along = (ring.normal_out * out + ring.normal_up * axis).dot(feed);
-        if (along <= 0 || !stands(tip + ring.height * axis + ring.radius * out, done)) continue;
+        if (along <= 0 || !stock_.stands(tip + ring.height * axis + ring.radius * out, done, kThinnestStock)) continue;
         here.angle_rad += kEngagementStep;
         here.steepest = std::max(here.steepest, along);
       }
@@ -94,21 +122,124 @@ class Along {
     }
   }
 
-  [[nodiscard]] bool stands(const Vec3& p, std::size_t done) const {
-    if (!q_.in_blank(p)) return false;
-    for (const Removed* removed : q_.before)
-      if (removed->excess(p, kThinnestStock) < kThinnestStock) return false;
-    return own_.excess_after(done, p, kThinnestStock) >= kThinnestStock;
-  }
-
   const std::vector<path::ToolMotion>& motions_;
   const EngagementQuery& q_;
   std::vector<PointRing> rings_;
   std::vector<double> around_;
-  SweptTool own_;
+  Stock stock_;
+};
+
+class OverloadAlong {
+ public:
+  OverloadAlong(const std::vector<path::ToolMotion>& motions, const EngagementQuery& q, const AskedLoad& asked)
+      : motions_(motions),
+        asked_(asked),
+        in_blank_(q.in_blank),
+        rings_(rings_of(q.mill.cutting(), kLoadRings)),
+        radius_(q.mill.cutting().largest_radius()),
+        stock_(motions, q) {
+    std::sort(rings_.begin(), rings_.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
+  }
+
+  Overload run() const {
+    const std::vector<std::size_t> done = Stock::done_before(motions_);
+    std::vector<Overload> found(motions_.size());
+    WorkShare share{double(motions_.size())};
+    tbb::parallel_for(std::size_t{0}, motions_.size(), [&](std::size_t k) {
+      if (!motions_[k].rapid) found[k] = along(motions_[k], done[k]);
+      share.add();
+    });
+    Overload most;
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const Overload& f = found[k];
+      const int line = motions_[k].line;
+      if (f.chip_share > most.chip_share) most.chip_share = f.chip_share, most.chip_line = line;
+      if (f.depth_mm > most.depth_mm) most.depth_mm = f.depth_mm, most.depth_line = line;
+      if (f.stock_mm > most.stock_mm) most.stock_mm = f.stock_mm, most.stock_line = line;
+    }
+    return most;
+  }
+
+ private:
+  /// A point of the cutting part where it goes into the work.
+  struct Edge {
+    Vec3 at;
+    double share = 0;   ///< of the feed along its normal
+    double height = 0;  ///< above the tip
+  };
+
+  [[nodiscard]] Overload along(const path::ToolMotion& m, std::size_t done) const {
+    Overload most;
+    const double way = (m.tip_to - m.tip_from).norm();
+    if (way == 0) return most;
+    const double quick = m.minutes > 0 ? way / m.minutes / asked_.feed_mm_min : INFINITY;
+    const int places = std::max(1, int(std::ceil(way / (kLoadPlaces * radius_))));
+    for (int k = 0; k < places; ++k)
+      for (const Edge& e : edges(m, (k + 0.5) / places)) look(e, quick, done, most);
+    return most;
+  }
+  [[nodiscard]] std::vector<Edge> edges(const path::ToolMotion& m, double t) const {
+    const Vec3 tip = path::tip_at(m, t), axis = path::axis_at(m, t), feed = (m.tip_to - m.tip_from).normalized();
+    const Vec3 across = feed - feed.dot(axis) * axis;
+    const Vec3 u = across.norm() > kAlongAxis ? Vec3(across.normalized()) : Vec3(axis.unitOrthogonal());
+    const Vec3 v = axis.cross(u);
+    std::vector<Edge> out;
+    for (const PointRing& ring : rings_)
+      for (int k = -kLoadDirections; k <= kLoadDirections; ++k) {
+        const double a = k * kHalfChip / kLoadDirections;
+        const Vec3 n = std::cos(a) * u + std::sin(a) * v;
+        const double share = (ring.normal_out * n + ring.normal_up * axis).dot(feed);
+        if (share >= kLeastShare) out.push_back({tip + ring.height * axis + ring.radius * n, share, ring.height});
+      }
+    return out;
+  }
+  void look(const Edge& e, double quick, std::size_t done, Overload& most) const {
+    const double chip = quick * e.share;
+    if (chip > std::max(kLoadFactor, most.chip_share) && lies_below(e.at, kLeastStock, done)) most.chip_share = chip;
+    const double deep = kLoadFactor * asked_.step_down_mm;  // what is deeper stands there, too
+    if (deep > 0 && e.share >= kAhead && e.height > std::max(deep, most.depth_mm) &&
+        e.height < deep + kLoadHeights * radius_ && lies_below(e.at, kLeastStock, done))
+      most.depth_mm = e.height;
+    if (!(asked_.stock_mm < INFINITY) || e.height > kLoadHeights * radius_) return;
+    for (double stock = std::max(kLoadFactor * asked_.stock_mm, kDeeper * most.stock_mm);
+         stock < radius_ && lies_below(e.at, std::max(stock, kLeastStock), done); stock *= kDeeper)
+      most.stock_mm = stock;
+  }
+  /// So far below all that is free, the outside of the blank too.
+  [[nodiscard]] bool lies_below(const Vec3& p, double depth_mm, std::size_t done) const {
+    const Vec3 out = Vec3(p.x(), p.y(), 0).normalized();
+    return in_blank_(p + depth_mm * Vec3::UnitZ()) && in_blank_(p + depth_mm * out) && in_blank_(p - depth_mm * out) &&
+           stock_.stands(p, done, depth_mm);
+  }
+
+  static constexpr double kHalfChip = kPi / 3;  // about the feed on either side: the chip is half as thick there
+  static constexpr double kAlongAxis = 1e-6;    // of a feed: less has no direction across the axis
+  static constexpr double kDeeper = 1.1;
+  static constexpr double kLeastShare =
+      0.1;                                // of the feed along the normal: what slides along a wall takes nothing off
+  static constexpr double kAhead = 0.85;  // of the feed along the normal: beside it ridges of the layer above may stand
+  const std::vector<path::ToolMotion>& motions_;
+  const AskedLoad& asked_;
+  const std::function<bool(const Vec3&)>& in_blank_;
+  std::vector<PointRing> rings_;
+  double radius_;
+  Stock stock_;
 };
 
 }  // namespace
+
+bool in_blank(const face_gear::FaceGear& gear, const Vec3& p) {
+  const double r = radius(p);
+  const auto& zones = gear.parameters().zones;
+  return p.z() <= gear.blank_top() && std::any_of(zones.begin(), zones.end(), [&](const auto& z) {
+           return r >= z.inner_radius_mm && r <= z.outer_radius_mm;
+         });
+}
+
+Overload overload_along(const std::vector<path::ToolMotion>& motions, const EngagementQuery& query,
+                        const AskedLoad& asked) {
+  return OverloadAlong(motions, query, asked).run();
+}
 
 std::vector<Engaged> engagement_along(const std::vector<path::ToolMotion>& motions, const EngagementQuery& query) {
   return Along(motions, query).run();

@@ -7,6 +7,7 @@
 
 #include "cam/cut/swept_tool.h"
 #include "cam/tool/profile.h"
+#include "geometry/face_gear/gear.h"
 
 namespace toothpath::cut {
 
@@ -29,11 +30,35 @@ struct EngagementQuery {
   std::size_t one_of = 1;                            ///< so many motions is measured; the others have zeros
 };
 
+/// Does the uncut blank hold this place? One ring for each zone, up to the top of the stock.
+[[nodiscard]] bool in_blank(const face_gear::FaceGear& gear, const Vec3& p);
+
 /// Stock thinner than this is none, mm.
 inline constexpr double kThinnestStock = 1e-3;
 /// Steps of the points about the axis and along round ends, rad: angles are found to one step; of arcs that are
 /// shorter, and so of chips thinner than its sine, nothing may be seen.
 inline constexpr double kEngagementStep = 0.1745;
+
+/// What an operation is asked to take off: feed, depth of its layers (0: it has none), the stock that it meets
+/// (infinite: not known).
+struct AskedLoad {
+  double feed_mm_min = 0, step_down_mm = 0, stock_mm = 0;
+};
+/// So many times what is asked is a load that nobody planned: feed per tooth, depth of a layer, stock.
+inline constexpr double kLoadFactor = 1.5;
+
+/// Where motions take off more than `kLoadFactor` times what is asked; 0: they do not. Lines of the motions.
+struct Overload {
+  double chip_share = 0;  ///< largest chip, in feeds per tooth as asked
+  double depth_mm = 0;    ///< greatest height above the tip of a chip right ahead
+  double stock_mm = 0;    ///< a chip lies so far below all that was free before
+  int chip_line = 0, depth_line = 0, stock_line = 0;
+};
+/// Motions as of `engagement_along`, with their time. Chips below `kLeastStock` under what stands are none. Places half
+/// a radius apart are looked at, and points of the cutting part a third of it apart. On all threads.
+[[nodiscard]] Overload overload_along(const std::vector<path::ToolMotion>& motions, const EngagementQuery& query,
+                                      const AskedLoad& asked);
+inline constexpr double kLeastStock = 0.05;  // mm
 
 /// One entry a motion; rapids and motions that stand have zeros. Motions are those of one operation in one space, in
 /// the order of the cut: each meets what the ones before it and the earlier operations left. On all threads.

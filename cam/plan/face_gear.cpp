@@ -336,19 +336,13 @@ class FaceGearPlanner {
     const tool::ProofTool bodies = tool::proof_tool(tool);
     const std::vector<const cut::Removed*> before = cleared();
     const double top = part_.gear().blank_top();
-    const cut::EngagementQuery query{mill, bodies.cutting, before, [&](const Vec3& p) { return in_blank(p, top); },
-                                     top,  one_of};
+    const cut::EngagementQuery query{
+        mill, bodies.cutting, before, [&](const Vec3& p) { return cut::in_blank(part_.gear(), p); }, top, one_of};
     std::vector<cut::Engaged> engaged;
     const auto work = [&] { engaged = cut::engagement_along(analytic::GougeCheck::motions_of(path), query); };
     if (o_.stage) o_.stage("engagement", work);
     else work();
     return engaged;
-  }
-  [[nodiscard]] bool in_blank(const Vec3& p, double top) const {
-    const double r = radius(p);
-    const auto& zones = part_.gear().parameters().zones;
-    return p.z() <= top && std::any_of(zones.begin(), zones.end(),
-                                       [&](const auto& z) { return r >= z.inner_radius_mm && r <= z.outer_radius_mm; });
   }
   void remember(std::size_t n) {
     cleared_.push_back(std::make_unique<cut::Removed>(analytic::GougeCheck::motions_of(plan_.paths[n]),

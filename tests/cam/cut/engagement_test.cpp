@@ -98,5 +98,59 @@ TEST(Engagement, FeedsFollowTheChip) {
   EXPECT_EQ(o.feed_for(1, 2), 200);
 }
 
+/// A pass at so many times the feed of 100 mm/min that is asked.
+path::ToolMotion fed(double y, double z, double times, int line) {
+  path::ToolMotion m = pass(y, z);
+  m.minutes = 40 / (100 * times);
+  m.line = line;
+  return m;
+}
+
+cut::Overload overload(const std::vector<path::ToolMotion>& motions, const cut::AskedLoad& asked,
+                       const std::vector<const cut::Removed*>& before = {}) {
+  const auto tool = mill(tool::CutterType::ball_end_mill, 4);
+  const auto profile = tool::profile_of(tool);
+  const auto bodies = tool::proof_tool(tool);
+  return cut::overload_along(
+      motions, {profile, bodies.cutting, before, [](const Vec3& p) { return p.z() <= 0 && std::abs(p.x()) < 10; }, 0},
+      asked);
+}
+
+TEST(Overload, WhatIsAskedIsNone) {
+  const auto found =
+      overload({fed(0, -1.5, 1, 1), fed(1, -1.5, 1.4, 2), fed(0, -3, 1, 3), fed(0, -3, 20, 4), fed(0, 0.1, 20, 5)},
+               {100, 1.5, INFINITY});
+  EXPECT_EQ(found.chip_share, 0);
+  EXPECT_EQ(found.depth_mm, 0);
+  EXPECT_EQ(found.stock_mm, 0);
+}
+
+// A pass is dropped: the next one below it is twice as deep; a link through where it went is quick.
+TEST(Overload, OfAPassThatIsMissing) {
+  const auto below = overload({fed(0, -3, 1, 7)}, {100, 1.5, INFINITY});
+  EXPECT_GT(below.depth_mm, 1.5 * 1.5);
+  EXPECT_LT(below.depth_mm, 3);
+  EXPECT_EQ(below.depth_line, 7);
+  EXPECT_EQ(below.chip_share, 0);
+  for (const double times : {1.98, 12.0}) {
+    const auto link = overload({fed(0, -3, times, 5)}, {100, 3, INFINITY});
+    EXPECT_NEAR(link.chip_share, times, 0.02 * times);
+    EXPECT_EQ(link.chip_line, 5);
+    EXPECT_EQ(link.depth_mm, 0);
+  }
+}
+
+// The ball of an operation before stood higher: the stock below it is that difference.
+TEST(Overload, OfStockThatAnEarlierOperationLeft) {
+  const auto tool = tool::proof_tool(mill(tool::CutterType::ball_end_mill, 4));
+  const cut::Removed removed({pass(0, -3)}, tool, 0);
+  EXPECT_EQ(overload({fed(0, -3.2, 1, 1)}, {100, 0, 0.2}, {&removed}).stock_mm, 0);
+  EXPECT_EQ(overload({fed(0, -3.5, 1, 1)}, {100, 0, INFINITY}, {&removed}).stock_mm, 0);
+  const auto found = overload({fed(0, -3.02, 1, 1), fed(0, -3.5, 1, 2)}, {100, 0, 0.1}, {&removed});
+  EXPECT_GT(found.stock_mm, 0.3);
+  EXPECT_LT(found.stock_mm, 0.48);
+  EXPECT_EQ(found.stock_line, 2);
+}
+
 }  // namespace
 }  // namespace toothpath
