@@ -80,7 +80,7 @@ std::vector<Diagnostic> read_inputs(Check& check) {
 
 /// What stands around the gear joins the proof.
 Status judge_scene(Check& check) {
-  if (!check.scene) return Ok{};
+  if (!check.scene || !check.proof->swept) return Ok{};
   auto verdicts = check.clock.run("stock and fixture", [&]() -> Result<std::vector<report::SceneVerdict>> {
     const auto around = check.gear.process->scene(check.limits.clearance_mm);
     if (!around) return around.error();

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -52,6 +53,43 @@ void note_worn_out(ProgramProof& out, const std::map<int, double>& life) {
                     worn.line, worn.tool, life.at(worn.tool), out.read.cutting_minutes.at(worn.tool)));
 }
 
+/// Where the axes go farthest, with the lines.
+class Farthest {
+ public:
+  void add(const readback::ExecutedMove& m) {
+    for (std::size_t a = 0; a < 5; ++a) {  // NaN (not yet known) passes neither comparison
+      if (m.joints[a] < low_[a].first) low_[a] = {m.joints[a], m.line};
+      if (m.joints[a] > high_[a].first) high_[a] = {m.joints[a], m.line};
+    }
+  }
+  /// Do the linear axes keep their travels so far?
+  [[nodiscard]] bool within(const machines::Machine& machine) const {
+    for (std::size_t a = 0; a < 3; ++a)
+      if (low_[a].first < machine.chain.linear[a].min_mm || high_[a].first > machine.chain.linear[a].max_mm)
+        return false;
+    return true;
+  }
+  /// Travels that are left. Between the ends of a block, where a tip is followed, no line is told.
+  void judge(const readback::ReadBack& read, const machines::Machine& machine,
+             std::vector<std::string>& reasons) const {
+    const std::vector<joints::AxisRange> axes = ranges_of(read, machine);
+    for (std::size_t a = 0; a < axes.size(); ++a)
+      for (const bool low : {true, false}) {
+        joints::AxisRange one = axes[a];
+        (low ? one.upper_limit : one.lower_limit) = low ? INFINITY : -INFINITY;
+        const std::size_t told = reasons.size();
+        judge_travels({&one, 1}, reasons);
+        const auto& [value, line] = low ? low_[a] : high_[a];
+        if (reasons.size() > told && value == (low ? read.least[a] : read.greatest[a]))
+          reasons.back() += fmt::format(", line {}", line);
+      }
+  }
+
+ private:
+  std::array<std::pair<double, int>, 5> low_ = all({INFINITY, 0}), high_ = all({-INFINITY, 0});
+  static std::array<std::pair<double, int>, 5> all(std::pair<double, int> v) { return {v, v, v, v, v}; }
+};
+
 /// The text as moves of the axes: of teeth that stand one by one those of the first ones.
 Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& asked, const GearCheck& gear,
                                   app::StageClock& clock) {
@@ -71,6 +109,7 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
       if (auto differs = other_blank(*program.blank, seen); !differs.empty())
         blanks.emplace(line, fmt::format("line {}: {}", line, differs));
   };
+  Farthest farthest;
   auto read = clock.run("read back", [&] {
     WorkShare share(double(std::count(program.text.begin(), program.text.end(), '\n') + 1));
     int seen = 0;  // lines; those of loops and sub-programs are counted once
@@ -82,7 +121,8 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
                           [&](const readback::ExecutedMove& m) {
                             judge.add(m);
                             if (m.line > seen) share.add(m.line - std::exchange(seen, m.line));
-                            if (program.moves) program.moves->add(m);
+                            farthest.add(m);  // what goes for hundreds of metres is not followed
+                            if (program.moves && farthest.within(program.machine)) program.moves->add(m);
                             if (program.watch) program.watch(m);
                           },
                       .life_min = life});
@@ -92,7 +132,11 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
   out.read = std::move(read.value());
   out.conditions = judge.finish();
   out.reasons = out.conditions.reasons;
-  if (program.moves) {
+  const std::size_t before = out.reasons.size();
+  farthest.judge(out.read, program.machine, out.reasons);
+  out.others_text = asked.paths.empty();
+  out.swept = out.reasons.size() == before || !out.others_text;  // along a path that is known it goes nowhere far
+  if (program.moves && out.swept) {
     out.machine_moves = clock.run("machine moves", [&] { return program.moves->finish(); });
     for (std::string& reason : report::reasons_of(program.machine, out.machine_moves))
       out.reasons.push_back(std::move(reason));
@@ -110,6 +154,37 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
         .push_back(fmt::format("line {}: HASH does not fit the text, {}", out.hash->line, what));
   }
   return out;
+}
+
+/// Of a pitch: a cut in the next tooth space comes farther than this from the middle of its own, one that is made there
+/// does not. In between are the lands.
+constexpr double kInSpace = 0.6;
+
+/// Does the tip lie about the tooth space with this number?
+bool in_space(const GearCheck& gear, const Vec3& tip, int number) {
+  return number >= 0 && number < gear.teeth() &&
+         std::abs(std::remainder(gear.pitches_from_space_0(tip) - number, gear.teeth())) <= kInSpace;
+}
+
+/// Motions of a text of others belong to the spaces in which they cut; what the text says counts where the tip may lie
+/// there. @param copies  the first tooth of an operation that turned copies follow: all of it goes with most of its
+/// cuts
+void place_in_spaces(const GearCheck& gear, bool copies, std::span<path::ToolMotion> motions) {
+  const int teeth = gear.teeth();
+  const auto counted = [&](int space) { return ((space % teeth) + teeth) % teeth; };
+  const auto space = [&](const path::ToolMotion& m) {
+    const Vec3 middle = 0.5 * (m.tip_from + m.tip_to);
+    return in_space(gear, middle, m.tooth) ? m.tooth : counted(int(std::lround(gear.pitches_from_space_0(middle))));
+  };
+  std::map<int, std::size_t> shifts;
+  for (path::ToolMotion& m : motions)
+    if (!copies) m.tooth = space(m);
+    else if (!m.rapid) ++shifts[counted(space(m) - m.tooth)];
+  if (shifts.empty()) return;
+  const int shift = std::max_element(shifts.begin(), shifts.end(), [](const auto& a, const auto& b) {
+                      return a.second < b.second;
+                    })->first;
+  for (path::ToolMotion& m : motions) m.tooth = counted(m.tooth + shift);
 }
 
 readback::Followed follower(const ProgramText& program, const readback::NcControl& control, const GearCheck& gear) {
@@ -221,6 +296,9 @@ Status follow_whole(const ProgramText& program, GearCheck& gear, ProgramProof& p
         clock.run("read back", [&] { return add_tool_motions(trace, proof.read.copies, by, proof.motions); });
     if (!followed) return in_file(followed.error(), program.file);
     if (const auto clear = gear.rapids_clear(trace, proof.control); !clear) rapids.push_back(clear.error().message);
+    if (proof.others_text)
+      place_in_spaces(gear, proof.read.copies.copies && trace.kept_teeth == 1,
+                      std::span(proof.motions).subspan(before));
     gear.meet(trace, std::span(proof.motions).subspan(before), proof.control);
   }
   if (proof.read.copies.copies) return Ok{};
@@ -249,9 +327,10 @@ class TeethOneByOne {
         teeth_(gear.teeth(), program.job.verify.all_teeth ? std::nullopt : std::optional(copy_tolerance(program.job)),
                [&gear](const path::ToolMotion& m) { return gear.may_cut(m); }) {}
 
-  /// Every tooth is seen, its rapids against the part and its cuts beside the first one.
+  /// Every tooth is seen, its rapids against the part and its cuts beside the first one. Does each cut the space that
+  /// its name says? If not, nothing else is said.
   Status see(std::vector<std::string>& rapids) {
-    if (auto seen = see_all(&TeethOneByOne::met); !seen) return seen;
+    if (auto seen = see_all(&TeethOneByOne::met); !seen || !names_hold_) return seen;
     while (!teeth_.settle())
       if (auto seen = see_all(&TeethOneByOne::seen_again); !seen) return seen;
     for (auto& [operation, refusal] : refused_) rapids.push_back(std::move(refusal));
@@ -267,6 +346,9 @@ class TeethOneByOne {
     proof_.likes_follow = teeth_.any_like();
     return Ok{};
   }
+
+  /// A name is a comment: somebody may have lost one, or count the teeth from 1.
+  [[nodiscard]] bool names_hold() const { return names_hold_; }
 
   /// What is to be proven, tooth by tooth.
   Status each(TeethWanted wanted, const ToothSink& sink) const {
@@ -290,8 +372,14 @@ class TeethOneByOne {
  private:
   struct Look {
     Status rapids = Ok{};
+    bool named_right = true;
     ToothByTooth::Seen seen;
   };
+  [[nodiscard]] bool named_right(const std::vector<path::ToolMotion>& motions) const {
+    return std::all_of(motions.begin(), motions.end(), [&](const path::ToolMotion& m) {
+      return m.rapid || in_space(gear_, 0.5 * (m.tip_from + m.tip_to), m.tooth) || !gear_.may_cut(m);
+    });
+  }
   Status see_all(void (TeethOneByOne::*take)(Tooth&, Look&)) {
     const bool anew = take == &TeethOneByOne::met;
     WorkShare share(double(gear_.teeth()) * double(program_.job.operations.size()));
@@ -300,6 +388,7 @@ class TeethOneByOne {
         [&](Tooth& tooth) {
           Look look;
           if (anew) look.rapids = gear_.rapids_clear(tooth.trace, proof_.control);
+          if (anew && proof_.others_text) look.named_right = named_right(tooth.motions);
           if (!tooth.first) look.seen = teeth_.seen(tooth.motions);
           return look;
         },
@@ -312,6 +401,7 @@ class TeethOneByOne {
   void met(Tooth& tooth, Look& look) {
     const int operation = tooth.trace.operation;
     if (!look.rapids) refused_.emplace(operation, look.rapids.error().message);
+    names_hold_ = names_hold_ && look.named_right;
     gear_.meet(tooth.trace, tooth.motions, proof_.control);
     proof_.tooth_motions += tooth.motions.size();
     if (tooth.first) {
@@ -330,9 +420,23 @@ class TeethOneByOne {
   GearCheck& gear_;
   ProgramProof& proof_;
   ToothByTooth teeth_;
+  bool names_hold_ = true;
   std::map<int, std::string> refused_;  // of an operation, its first rapid that is not clear
   std::vector<std::pair<int, std::vector<path::ToolMotion>>> kept_;  // operations, with space 0 where it comes later
 };
+
+/// The program once more with all of its moves kept, for names that do not hold.
+Status keep_whole(const ProgramText& program, const GearCheck& gear, ProgramProof& proof, app::StageClock& clock) {
+  auto read = clock.run("read back", [&] {
+    return read_back(program.text, program.file, proof.control, program.machine, *program.job.setup,
+                     {.teeth = gear.teeth(), .keep_all = program.job.verify.all_teeth});
+  });
+  if (!read) return read.error();
+  proof.read.first_teeth = false;
+  proof.read.operations = std::move(read->operations);
+  proof.read.between = std::move(read->between);
+  return Ok{};
+}
 
 /// Only the teeth are proven against the part: nothing may feed ahead of, between or behind them.
 void judge_feeds_between(const readback::ReadBack& read, std::vector<std::string>& reasons) {
@@ -428,12 +532,21 @@ Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths&
   auto read = read_program(program, asked, gear, clock);
   if (!read) return read.error();
   ProgramProof proof = std::move(read.value());
+  if (!proof.swept) {
+    proof.warnings.emplace_back(
+        "the axes leave their travels: gouge, clearance, rapids and material left were not looked at");
+    return proof;
+  }
   std::vector<std::string> rapids;
   std::optional<TeethOneByOne> one_by_one;
   if (proof.read.first_teeth) {
     one_by_one.emplace(program, gear, proof);
     const Status seen = clock.run("compare the teeth", [&] { return one_by_one->see(rapids); });
     if (!seen) return seen.error();
+    if (!one_by_one->names_hold())
+      if (auto kept = keep_whole(program, gear, proof, clock); !kept) return kept.error();
+  }
+  if (proof.read.first_teeth) {
     proof.each_tooth = [&](TeethWanted wanted, const ToothSink& sink) { return one_by_one->each(wanted, sink); };
   } else {
     if (auto followed = follow_whole(program, gear, proof, rapids, clock); !followed) return followed.error();
@@ -447,7 +560,6 @@ Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths&
       proof.reasons.push_back(clear.error().message);
   judge_feeds_between(proof.read, proof.reasons);
   judge_cuts_again(proof, program, gear, proof.reasons);
-  judge_travels(ranges_of(proof.read, program.machine), proof.reasons);
   gear.judge(proof, clock);
   proof.each_tooth = nullptr;
   if (!asked.paths.empty()) compare(proof, asked, gear, clock);

@@ -75,6 +75,8 @@ struct ProgramProof {
   std::vector<std::string> reasons;                  ///< why the program is not proven; empty: it is
   std::vector<std::string> warnings;                 ///< what may be a choice
 
+  bool others_text = false;  ///< no path is known: what its cuts take off is judged, too
+  bool swept = true;  ///< false: the axes leave their travels, and nothing below is known
   proof::GougeResult gouge;
   std::vector<proof::ExcessResult> excess;         ///< one an operation
   std::optional<proof::ExcessResult> finished;     ///< the finished surface; none: no operation finishes it
@@ -93,6 +95,9 @@ class GearCheck {
   /// How near a motion is followed: largest proven distance from its straight line, mm (tip) and rad (axis). Counts in
   /// every bound.
   [[nodiscard]] virtual double motion_tolerance() const = 0;
+  /// How far a place of the tip lies about the gear axis from the middle of tooth space 0 at its radius, in pitches: a
+  /// whole number is the middle of another space.
+  [[nodiscard]] virtual double pitches_from_space_0(const Vec3& tip) const = 0;
   /// Do the rapids of this trace keep the whole tool clear of part and blank at every moment? A refusal names the line.
   [[nodiscard]] virtual Status rapids_clear(const readback::OperationTrace& trace,
                                             const readback::NcControl& control) const = 0;
@@ -116,7 +121,8 @@ void with_all_motions(ProgramProof& program, const std::function<void(const std:
                                                                       std::span<const proof::LikeMotion> likes)>& work);
 
 /// The one proof of a program: feeds, speeds, tools and coolant are judged by what the job asks (proof_limits.h), a
-/// line HASH that does not fit is a reason where the text is our own, a warning else. Stages "read back", "compare the
+/// line HASH that does not fit is a reason where the text is our own, a warning else. Of another text whose axes leave
+/// their travels nothing else is asked. Stages "read back", "compare the
 /// teeth" (only where teeth are written out), those of the gear, "compare with the path". Errors: what the reader
 /// refuses, located in the file. A program that is read but not safe is no error: see `reasons`.
 [[nodiscard]] Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths& asked, GearCheck& gear,

@@ -150,7 +150,7 @@ void note_axis_program(report::RunReport& report, const job::Job& job, const mac
 }
 
 void note_proof(report::RunReport& report, const ProgramProof& proof) {
-  report.gouge = proof.gouge;
+  if (proof.swept) report.gouge = proof.gouge;
   report.excess = proof.excess;
   report.finished = proof.finished;
   report.findings = proof.findings;

@@ -122,6 +122,8 @@ void add_proof(Json& json, const RunReport& r) {
     for (const auto& place : r.gouge->worst) worst.push_back(place_json(place));
     json["worst_places"] = std::move(worst);
     json["deepest"] = place_json(r.gouge->deepest);
+  } else if (r.conditions) {  // it was read: the axes leave their travels
+    json["gouge_um"] = {{"measured", nullptr}, {"bound", nullptr}, {"tolerance", app::um(r.gouge_tolerance_mm)}};
   }
   if (!r.excess.empty() || r.finished) {
     Json excess;

@@ -132,20 +132,20 @@ class PlantedProgram {
     Found found;
     if (outcome.report_json.empty()) return {"refused", to_text(outcome.errors), 0};
     const auto report = nlohmann::json::parse(outcome.report_json);
-    found.gouge_um = report["gouge_um"]["measured"].get<double>();
+    if (const auto& gouge = report["gouge_um"]["measured"]; !gouge.is_null()) found.gouge_um = gouge.get<double>();
     const auto is = [&](const std::string& reason, const char* word) { return reason.find(word) != std::string::npos; };
     for (const auto& entry : report["reasons"]) {
       const auto reason = entry.get<std::string>();
       found.text += reason + "; ";
-      const char* kind = is(reason, "not made again") || is(reason, "does not cut") ? "missing"
-                         : is(reason, "the job says T")                             ? "tool"
-                         : is(reason, "coolant of the job")                         ? "coolant"
-                         : is(reason, "turns with S")                               ? "speed"
-                         : is(reason, "mm/min") || is(reason, "max_speed")          ? "feed"
-                         : is(reason, "rapid")                                      ? "rapid"
-                         : is(reason, "left material") || is(reason, "leaves")      ? "left"
-                         : is(reason, "gouge") || is(reason, "cuts")                ? "gouge"
-                                                                                    : "other";
+      const char* kind = is(reason, "not made again") || is(reason, "does not cut")                ? "missing"
+                         : is(reason, "the job says T")                                            ? "tool"
+                         : is(reason, "coolant of the job")                                        ? "coolant"
+                         : is(reason, "turns with S")                                              ? "speed"
+                         : is(reason, "mm/min") || is(reason, "max_speed") || is(reason, " chip ") ? "feed"
+                         : is(reason, "rapid")                                                     ? "rapid"
+                         : is(reason, "left material") || is(reason, "leaves")                     ? "left"
+                         : is(reason, "gouge") || is(reason, "cuts")                               ? "gouge"
+                                                                                                   : "other";
       if (found.kind.find(kind) == std::string::npos) found.kind += (found.kind.empty() ? "" : "+") + std::string(kind);
     }
     if (!found.kind.empty()) return found;

@@ -2,9 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
+#include <stdexcept>
 
 #include "app/commands/check.h"
 #include "app/commands/run.h"
@@ -19,33 +23,35 @@ using Lines = std::vector<std::string>;
 struct Verdict {
   bool verified = false;
   std::string reasons;
+  double left_um = 0;
 };
 
-/// samples/spur_quick.toml with its teeth written out, on the axis of the rotary and off it.
-class ToothSpaces : public testing::TestWithParam<const char*> {
- protected:
-  void SetUp() override {
-    std::string machine = file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml");
-    write_file(dir_ / "machine.toml", machine + "\n[post]\nindex_loop = false\n");
+/// samples/spur_quick.toml at a place of the table, its teeth written out or in loops: made once.
+class Made {
+ public:
+  Made(const std::string& place, const std::string& post) {
+    const std::string machine = file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml");
+    write_file(dir_ / "machine.toml", machine + "\n[post]\n" + post + "\n");
     std::string job = file_text(TOOTHPATH_SOURCE_DIR "/samples/spur_quick.toml");
     const auto put = [&](const std::string& from, const std::string& to) {
       const auto at = job.find(from);
-      ASSERT_NE(at, std::string::npos) << from;
+      if (at == std::string::npos) throw std::runtime_error(from);
       job.replace(at, from.size(), to);
     };
     put("\"xyzac_large.toml\"", "\"machine.toml\"\naccept_assumed = true");
-    put("[3.0, -2.0, 120.0]", std::string("[") + GetParam() + ", 120.0]");
-    put("[3.0, -2.0, 0.0]", std::string("[") + GetParam() + ", 0.0]");
+    put("[3.0, -2.0, 120.0]", "[" + place + ", 120.0]");
+    put("[3.0, -2.0, 0.0]", "[" + place + ", 0.0]");
     write_file(dir_ / "job.toml", job);
     commands::RunRequest request;
     request.job_file = dir_ / "job.toml";
     request.out_dir = dir_ / "out";
     request.quiet = true;
-    ASSERT_EQ(commands::run_job(request).exit_code, app::ExitCode::ok);
+    EXPECT_EQ(commands::run_job(request).exit_code, app::ExitCode::ok);
     std::istringstream in(file_text(dir_ / "out/program.ngc"));
     for (std::string line; std::getline(in, line);) lines_.push_back(line);
   }
-  Verdict check(const Lines& lines) {
+  [[nodiscard]] const Lines& lines() const { return lines_; }
+  [[nodiscard]] Verdict check(const Lines& lines) const {
     std::string text;
     for (const std::string& line : lines) text += line + "\n";
     write_file(dir_ / "edited.ngc", text);
@@ -58,10 +64,30 @@ class ToothSpaces : public testing::TestWithParam<const char*> {
     EXPECT_FALSE(outcome.report_json.empty()) << to_text(outcome.errors);
     if (outcome.report_json.empty()) return {};
     const auto report = nlohmann::json::parse(outcome.report_json);
-    Verdict out{report["verified"].get<bool>(), ""};
+    Verdict out{report["verified"].get<bool>(), "", NAN};
     for (const auto& reason : report["reasons"]) out.reasons += reason.get<std::string>() + "\n";
+    if (report.contains("excess_um")) out.left_um = report["excess_um"]["finished"]["max"].get<double>();
     return out;
   }
+  static const Made& of(const std::string& place, const std::string& post) {
+    static std::map<std::string, std::unique_ptr<Made>> made;
+    auto& one = made[place + post];
+    if (!one) one = std::make_unique<Made>(place, post);
+    return *one;
+  }
+
+ private:
+  TestDir dir_;
+  Lines lines_;
+};
+
+class ToothSpaces : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    made_ = &Made::of(GetParam(), "index_loop = false");
+    lines_ = made_->lines();
+  }
+  Verdict check(const Lines& lines) { return made_->check(lines); }
   /// Index of the line (TOOTH k) of an operation.
   [[nodiscard]] std::size_t tooth(int operation, int k) const {
     const auto from = std::find_if(lines_.begin(), lines_.end(), [&](const std::string& line) {
@@ -84,7 +110,7 @@ class ToothSpaces : public testing::TestWithParam<const char*> {
     while (lines_[last].starts_with("X")) ++last;
     return {first, last};
   }
-  TestDir dir_;
+  const Made* made_ = nullptr;
   Lines lines_;
 };
 INSTANTIATE_TEST_SUITE_P(Place, ToothSpaces, testing::Values("3.0, -2.0", "14.0, -9.0"), [](const auto& place) {
@@ -187,6 +213,86 @@ TEST_P(ToothSpaces, AnyNumberOfThreadsSaysTheSame) {
   for (const int threads : {1, 4}) said[threads / 4] = on_threads(threads, [&] { return check(lines).reasons; });
   EXPECT_NE(said[0], "");
   EXPECT_EQ(said[0], said[1]);
+}
+
+// A name is a comment: the space is known by where the tool cuts.
+TEST_P(ToothSpaces, NamesAreFree) {
+  Lines counted = lines_, lost = lines_;
+  for (std::string& line : counted)
+    if (std::smatch name; std::regex_match(line, name, std::regex("\\(TOOTH ([0-9]+)\\)")))
+      line = fmt::format("(TOOTH {})", std::stoi(name[1]) + 1);
+  lost.erase(lost.begin() + std::ptrdiff_t(tooth(1, 5)));
+  const double left_um = check(lines_).left_um;
+  for (const Lines& lines : {counted, lost}) {
+    const Verdict found = check(lines);
+    EXPECT_TRUE(found.verified) << found.reasons;
+    EXPECT_NEAR(found.left_um, left_um, 0.05);
+  }
+}
+
+// Loops whose teeth are not quite turned copies: all cuts of a space count, however the text comes to it.
+class LoopsThatDiffer : public testing::Test {
+ protected:
+  [[nodiscard]] static const Made& made() { return Made::of("3.0, -2.0", "index_loop = true"); }
+  /// The index of one operation, or of both, says something else.
+  [[nodiscard]] static Lines indexed(const std::string& by, std::vector<int> operations) {
+    Lines lines = made().lines();
+    int loop = 0;
+    for (std::string& line : lines)
+      if (line.starts_with("G52 C[") && std::find(operations.begin(), operations.end(), loop++) != operations.end())
+        line = "G52 C[" + by + "]";
+    EXPECT_EQ(loop, 2);
+    return lines;
+  }
+};
+
+TEST_F(LoopsThatDiffer, AreJudgedWithAllCutsOfASpace) {
+  const Verdict as_made = made().check(made().lines());
+  ASSERT_TRUE(as_made.verified) << as_made.reasons;
+  const std::pair<const char*, std::vector<int>> edits[] = {
+      {"0-#1*360.0001/60", {0}},   {"0-#1*360.0001/60", {1}},   {"0.0001-#1*360/60", {1}}, {"0-[#1+7]*360/60", {1}},
+      {"0-[#1+7]*360/60", {0, 1}}, {"0-#1*7*360.0001/60", {0}}, {"#1*360/60", {1}}};
+  for (const auto& [index, operations] : edits) {
+    const Verdict found = made().check(indexed(index, operations));
+    EXPECT_TRUE(found.verified) << index << ": " << found.reasons;
+    EXPECT_NEAR(found.left_um, as_made.left_um, 0.1) << index;
+  }
+}
+
+TEST_F(LoopsThatDiffer, AndWhatIsMissingIsFound) {
+  expect_told(made().check(indexed("0-#1*2*360.0001/60", {1})), {"operation 1 does not cut tooth 1, 3, 5"});
+}
+
+// A roughing pass is dropped: nothing is gouged, the finished surface is right, the tool runs through what stands.
+TEST(PassesThatAreMissing, AreFoundByTheirLoad) {
+  const Made& made = Made::of("3.0, -2.0", "index_loop = true");
+  const auto cut = [](const std::string& line) { return line.starts_with("X"); };
+  for (const int pass : {0, 2}) {
+    Lines lines = made.lines();
+    auto first = std::find(lines.begin(), lines.end(), "o100 sub");
+    for (int k = 0; k <= pass; ++k) {
+      if (k > 0) first = std::find_if_not(first, lines.end(), cut);
+      first = std::find_if(first, lines.end(), cut);
+    }
+    lines.erase(first, std::find_if_not(first, lines.end(), cut));
+    const Verdict found = made.check(lines);
+    expect_told(found, {"operation 0: at line [0-9]+ .* with a chip of [0-9.]+ times the feed"});
+    EXPECT_EQ(found.reasons.find("left material"), std::string::npos) << found.reasons;
+  }
+}
+
+// A decimal point is lost, and an axis goes for hundreds of metres: it is told with its line, and nothing else is
+// asked.
+TEST(LostDecimalPoint, IsToldBeforeAnythingIsSwept) {
+  const Made& made = Made::of("3.0, -2.0", "index_loop = true");
+  for (const char axis : {'X', 'Y', 'Z'}) {
+    Lines lines = made.lines();
+    const auto at = std::find(lines.begin(), lines.end(), "o102 sub") + 6;
+    *at = std::regex_replace(*at, std::regex(fmt::format("({}[0-9]+)\\.", axis)), "$1");
+    const Verdict found = made.check(lines);
+    expect_told(found, {fmt::format("travel: {} = [0-9.]+ exceeds [0-9.]+, line {}\\n", axis, at - lines.begin() + 1)});
+    EXPECT_EQ(found.reasons.find("gouge"), std::string::npos) << found.reasons;
+  }
 }
 
 }  // namespace

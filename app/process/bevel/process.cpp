@@ -26,15 +26,6 @@ constexpr mesh::BevelMeshOptions kPictureFacets{.stations = 7, .rows = 5, .root_
 constexpr double kAboveTip_mm = 2, kBesideMill_mm = 4;  // where distances from a swept mill are asked most
 constexpr double kRootShare = 1;  // the flat tip of the mill faces the root: a length error reaches it in full
 
-/// How far the middle of a tooth space has wound about the axis at a tip, from the reference cone distance on.
-double space_azimuth(const bevel_gear::BevelGear& gear, const Vec3& tip) {
-  const double ell =
-      std::clamp(bevel_gear::cone_point(tip, gear.sin_delta(), gear.cos_delta()).ell, gear.R_i(), gear.R_e());
-  const bevel_gear::BevelHalf& half = ell > gear.R_ref() ? gear.halves().back() : gear.halves().front();
-  const auto& trace = half.walls[0].trace;
-  return trace.middle(trace.beta(ell)).e;
-}
-
 finger::FingerCheckOptions check_options(const process::FlankGrid& grid) {
   finger::FingerCheckOptions options;
   if (grid.rows > 0) options.rows = grid.rows;
@@ -144,9 +135,8 @@ class BevelProcess final : public process::GearProcess {
   [[nodiscard]] std::vector<svg::LineChart> limit_charts() const override { return {}; }
   [[nodiscard]] Result<process::SceneGear> scene(double clearance_mm) const override {
     // W stands in the pitch apex.
-    process::SceneGear out{part_.teeth, clearance_mm, {}, [gear = gear_](const Vec3& tip) {
-                             return std::atan2(tip.y(), tip.x()) - space_azimuth(gear, tip);
-                           }};
+    process::SceneGear out{
+        part_.teeth, clearance_mm, {}, [gear = gear_](const Vec3& tip) { return azimuth_from_space_0(gear, tip); }};
     out.bodies.resize(job_.tools.size());
     for (const auto& operation : job_.operations) {
       const auto k = std::size_t(operation.tool);

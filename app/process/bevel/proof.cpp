@@ -148,6 +148,15 @@ std::map<int, double> unlike_teeth(const process::ProgramProof& program, const j
 
 }  // namespace
 
+/// The middle of a tooth space winds about the axis from the reference cone distance on.
+double azimuth_from_space_0(const bevel_gear::BevelGear& gear, const Vec3& tip) {
+  const double ell =
+      std::clamp(bevel_gear::cone_point(tip, gear.sin_delta(), gear.cos_delta()).ell, gear.R_i(), gear.R_e());
+  const bevel_gear::BevelHalf& half = ell > gear.R_ref() ? gear.halves().back() : gear.halves().front();
+  const auto& trace = half.walls[0].trace;
+  return std::atan2(tip.y(), tip.x()) - trace.middle(trace.beta(ell)).e;
+}
+
 std::string MovingAxes::letters() const {
   std::string out;
   for (const char c : letter)
@@ -162,6 +171,10 @@ BevelGearCheck::BevelGearCheck(const job::Job& job, const machines::Machine& mac
 int BevelGearCheck::teeth() const { return gear_.parameters().teeth; }
 
 double BevelGearCheck::motion_tolerance() const { return kFingerMotionTolerance; }
+
+double BevelGearCheck::pitches_from_space_0(const Vec3& tip) const {
+  return azimuth_from_space_0(gear_, tip) / gear_.pitch();
+}
 
 /// Against the cone of the blank, hub and shaft: engaging rapids pass beside the cone, inside the cylinder that links
 /// avoid.

@@ -19,6 +19,9 @@ struct MovingAxes {
   [[nodiscard]] std::string letters() const;  ///< "YC"
 };
 
+/// Azimuth of a tip, less that of the middle of tooth space 0 at its cone distance.
+[[nodiscard]] double azimuth_from_space_0(const bevel_gear::BevelGear& gear, const Vec3& tip);
+
 /// Everything that it is made of must outlive it.
 class BevelGearCheck final : public process::GearCheck {
  public:
@@ -27,6 +30,7 @@ class BevelGearCheck final : public process::GearCheck {
 
   [[nodiscard]] int teeth() const override;
   [[nodiscard]] double motion_tolerance() const override;
+  [[nodiscard]] double pitches_from_space_0(const Vec3& tip) const override;
   [[nodiscard]] Status rapids_clear(const readback::OperationTrace& trace,
                                     const readback::NcControl& control) const override;
   [[nodiscard]] bool may_cut(const path::ToolMotion& motion) const override;

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "app/base/units.h"
 #include "app/process/face/unreached.h"
 #include "app/process/proof_limits.h"
+#include "cam/cut/engagement.h"
+#include "cam/plan/face_gear.h"
 #include "cam/proof/rapid_clearance.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
@@ -220,6 +223,15 @@ int FaceGearCheck::teeth() const { return part_.gear().parameters().teeth; }
 
 double FaceGearCheck::motion_tolerance() const { return kBallMotionTolerance; }
 
+double FaceGearCheck::pitches_from_space_0(const Vec3& tip) const {
+  const auto& zones = part_.gear().parameters().zones;
+  const double r = radius(tip);
+  int zone = 0;
+  for (std::size_t k = 1; k < zones.size(); ++k)  // from the middle of a groove on the outer ring counts
+    if (2 * r > zones[k - 1].outer_radius_mm + zones[k].inner_radius_mm) zone = int(k);
+  return (std::atan2(tip.y(), tip.x()) - part_.space_azimuth(zone, r)) / part_.gear().pitch();
+}
+
 /// The cylinder that the axis program promised to avoid.
 Status FaceGearCheck::rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const {
   return check_rapids_outside(trace, control, machine_, *job_.setup, clearance_body(part_.gear()), job_.tools);
@@ -319,6 +331,45 @@ void FaceGearCheck::judge_unlike(process::ProgramProof& program, const OtherTeet
   if (refused > kTeethTold) program.reasons.push_back(fmt::format("so it is with {} more teeth", refused - kTeethTold));
 }
 
+/// What an operation takes off at a time, in what those before it leave: nobody who wrote the text by hand sees that.
+void FaceGearCheck::judge_load(std::span<const path::ToolMotion> firsts, std::vector<std::string>& reasons) const {
+  const face_gear::FaceGear& gear = part_.gear();
+  const readback::AskedConditions asked = process::asked_conditions(job_);
+  std::vector<std::unique_ptr<cut::Removed>> removed;
+  std::vector<const cut::Removed*> before;
+  for (std::size_t n = 0; n < job_.operations.size(); ++n) {
+    const path::MillingOperation& op = job_.operations[n];
+    const tool::ToolAssembly& tool = job_.tools[std::size_t(op.tool)];
+    std::vector<path::ToolMotion> motions;
+    for (const path::ToolMotion& m : firsts)
+      if (m.operation == int(n)) motions.push_back(m);
+    if (motions.empty()) return;  // told elsewhere; what the next ones meet is not known
+    const tool::Profile mill = tool::profile_of(tool);
+    const cut::EngagementQuery stock{mill, tool_of(int(n)).cutting, before,
+                                     [&](const Vec3& p) { return cut::in_blank(gear, p); }, gear.blank_top()};
+    const cut::Overload load = cut::overload_along(
+        motions, stock,
+        {asked.operations[n].feed_mm_min, op.step_down_mm, ball::stock_before(job_.operations, job_.tools, n)});
+    if (load.chip_share > 0)
+      reasons.push_back(fmt::format(
+          "operation {}: at line {} the tool runs through what stands there with a chip of {:.2f} times the feed per "
+          "tooth that the job asks, limit {:.1f} times: a cut ahead of it is missing, or the feed is too quick",
+          n, load.chip_line, load.chip_share, cut::kLoadFactor));
+    if (load.depth_mm > 0)
+      reasons.push_back(
+          fmt::format("operation {}: at line {} the chip reaches {:.3f} mm or more above the tip, step_down = {:g} mm, "
+                      "limit {:.1f} times that: a cut of the layer above is missing",
+                      n, load.depth_line, load.depth_mm, op.step_down_mm, cut::kLoadFactor));
+    if (load.stock_mm > 0)
+      reasons.push_back(fmt::format(
+          "operation {}: at line {} the chip lies {:.3f} mm or more below what was free before, the operations ahead "
+          "leave {:.3f} mm, limit {:.1f} times that: a cut of theirs is missing",
+          n, load.stock_line, load.stock_mm, ball::stock_before(job_.operations, job_.tools, n), cut::kLoadFactor));
+    removed.push_back(std::make_unique<cut::Removed>(std::move(motions), tool_of(int(n)), gear.blank_top()));
+    before.push_back(removed.back().get());
+  }
+}
+
 void FaceGearCheck::meet(const readback::OperationTrace&, std::span<const path::ToolMotion>,
                          const readback::NcControl&) {
 }  // all that is said of a face gear holds for the teeth that are proven
@@ -329,10 +380,10 @@ void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock
   OtherTeeth others(program, *this);
   cut::CutSurfaceOptions grid = grid_;
   grid.watch_mm = others.watch_mm();
-  surface = clock.run("cut surface", [&] {
-    return cut::measure_cut_surface(part_, first_in_space_0(program.motions, teeth()), job_.operations, job_.tools,
-                                    grid);
-  });
+  const std::vector<path::ToolMotion> firsts = first_in_space_0(program.motions, teeth());
+  surface = clock.run("cut surface",
+                      [&] { return cut::measure_cut_surface(part_, firsts, job_.operations, job_.tools, grid); });
+  if (program.others_text) clock.run("engagement", [&] { judge_load(firsts, program.reasons); });
   others.measured(surface);
   program.gouge = clock.run("proof of the program", [&] {
     return gouge_of(check_, program, tool_of_operation, [&](const auto& motions) { others.see(motions); });

@@ -20,6 +20,7 @@ class FaceGearCheck final : public process::GearCheck {
 
   [[nodiscard]] int teeth() const override;
   [[nodiscard]] double motion_tolerance() const override;
+  [[nodiscard]] double pitches_from_space_0(const Vec3& tip) const override;
   [[nodiscard]] Status rapids_clear(const readback::OperationTrace& trace,
                                     const readback::NcControl& control) const override;
   [[nodiscard]] bool may_cut(const path::ToolMotion& motion) const override;
@@ -37,6 +38,7 @@ class FaceGearCheck final : public process::GearCheck {
   class OtherTeeth;
   [[nodiscard]] const tool::ProofTool& tool_of(int operation) const;
   void judge_unlike(process::ProgramProof& program, const OtherTeeth& others);
+  void judge_load(std::span<const path::ToolMotion> firsts, std::vector<std::string>& reasons) const;
 
   const job::Job& job_;
   const machines::Machine& machine_;
