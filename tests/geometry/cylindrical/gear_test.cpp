@@ -6,6 +6,7 @@
 
 #include "geometry/tooth_space/curvature.h"
 #include "tests/geometry/cylindrical/samples.h"
+#include "tests/support/sample_gears.h"
 
 namespace toothpath::test {
 namespace {
@@ -102,6 +103,22 @@ TEST(CylindricalGear, PlacesAndNormalsAreThePrintedOnes) {
     EXPECT_NEAR(azimuth(at->p), q.azimuth, 2e-9) << q.r;
     EXPECT_LT((at->p - q.p).norm(), 3e-9) << q.r;
     EXPECT_LT((at->n - q.n).norm(), 5e-10) << q.r;
+  }
+}
+
+/// A face gear's shaper is a cylindrical gear: without its allowance the pinion of the double helical face gear is it.
+TEST(CylindricalGear, ThePinionIsTheShaperOfItsFaceGear) {
+  const auto face = double_helical_parameters();
+  auto g = double_helical_pinion();
+  g.thickness_allowance_mm = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto shaper = face_gear::make_shaper<double>(face, face.zones[k].helix_angle_rad);
+    const cylindrical::InvoluteKernel<double> pinion(g, g.zones[k]);
+    EXPECT_NEAR(pinion.r, shaper.r_p, 1e-13);
+    EXPECT_NEAR(pinion.r_b, shaper.r_b, 1e-13);
+    EXPECT_NEAR(pinion.kappa, shaper.kappa, 1e-16);
+    EXPECT_NEAR(pinion.cos_bb, shaper.cos_bb, 1e-15);
+    EXPECT_NEAR(pinion.eta_b, shaper.theta_0, 1e-15);
   }
 }
 
