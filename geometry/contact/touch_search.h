@@ -71,6 +71,26 @@ double highest_place(F&& f, double lo, double hi) {
   return fhi > fx ? hi : x;
 }
 
+/// The last place between `inside` and `outside` where f is not below 0, to `enough` of the places or of f: the rule of
+/// false position with the Illinois correction. @param f  not below 0 inside
+template <typename F>
+double last_inside(F&& f, double inside, double outside, double enough) {
+  double in = f(inside), out = f(outside), least = in;
+  for (int k = 0, side = 0; k < 100 && least > enough && std::abs(inside - outside) > enough; ++k) {
+    const double middle = inside + (outside - inside) * in / (in - out), by = f(middle);
+    if (by >= 0) {
+      inside = middle, in = least = by;
+      if (side > 0) out /= 2;
+      side = 1;
+    } else {
+      outside = middle, out = by;
+      if (side < 0) in /= 2;
+      side = -1;
+    }
+  }
+  return inside;
+}
+
 /// The search for the first touch on one flank at one position of the gear: the highest asked turn over the grid and
 /// between its nodes.
 class TouchSearch {
@@ -227,24 +247,9 @@ class TouchSearch {
     const double radius = pinion_.place(turn_(point_at(row, column))).radius;
     return std::min(pinion_.r_a - radius, radius - pinion_.r_b);
   }
-  /// Row between `inside` and `outside` where the pinion's involute ends, on the inside, to 1e-12 mm or rows: the rule
-  /// of false position with the Illinois correction.
+  /// Row between `inside` and `outside` where the pinion's involute ends, on the inside, to 1e-12 mm or rows.
   [[nodiscard]] double edge(double column, double inside, double outside) const {
-    constexpr double kEnough = 1e-12;
-    double in = inside_by(inside, column), out = inside_by(outside, column), least = in;
-    for (int k = 0, side = 0; k < 100 && least > kEnough && std::abs(inside - outside) > kEnough; ++k) {
-      const double row = inside + (outside - inside) * in / (in - out), by = inside_by(row, column);
-      if (by >= 0) {
-        inside = row, in = least = by;
-        if (side > 0) out /= 2;
-        side = 1;
-      } else {
-        outside = row, out = by;
-        if (side < 0) in /= 2;
-        side = -1;
-      }
-    }
-    return inside;
+    return last_inside([&](double row) { return inside_by(row, column); }, inside, outside, 1e-12);
   }
 
   const ContactFlank& flank_;

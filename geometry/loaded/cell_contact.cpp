@@ -93,6 +93,9 @@ class Search {
       for (std::size_t k = 0; k < w.size(); ++k) lever_.push_back(w.lever_of(k));
     }
     n_ = gap_.size();
+    // Cells of unequal size give way unequally: steps by what each gives way alone.
+    const double stiffest = *std::min_element(own_.begin(), own_.end());
+    for (std::size_t k = 0; k < n_; ++k) ease_.push_back(stiffest / own_[k]), weight_.push_back(area_[k] * ease_[k]);
     p_.assign(n_, 0.0), u_.assign(n_, 0.0), t_.assign(n_, 0.0), q_.assign(n_, 0.0);
   }
 
@@ -122,12 +125,13 @@ class Search {
   }
 
  private:
-  /// The approach that fits the pressed cells best, by area: their mean where all levers are 1; with the gap added.
+  /// The approach that fits the pressed cells best, by weight: their mean where cells and levers are equal; with the
+  /// gap added.
   [[nodiscard]] double mean(const std::vector<double>& v, bool gap) const {
     double sum = 0, area = 0;
     for (std::size_t k = 0; k < n_; ++k)
       if (p_[k] > 0)
-        sum += area_[k] * lever_[k] * (v[k] + (gap ? gap_[k] : 0)), area += area_[k] * lever_[k] * lever_[k];
+        sum += weight_[k] * lever_[k] * (v[k] + (gap ? gap_[k] : 0)), area += weight_[k] * lever_[k] * lever_[k];
     return sum / area;
   }
   /// What is left of the gap of a cell when the bodies approach by X.
@@ -175,10 +179,11 @@ class Search {
     for (std::size_t k = 0; k < n_; ++k)
       if (p_[k] > 0) {
         const double r = open(k, X);
-        G += area_[k] * r * r, area += area_[k];
+        G += weight_[k] * r * r, area += weight_[k];
       }
     still_ = !(G > area * kRounding * kRounding * X * X);
-    for (std::size_t k = 0; k < n_; ++k) t_[k] = p_[k] > 0 ? open(k, X) + (conjugate ? G / G_old * t_[k] : 0) : 0;
+    for (std::size_t k = 0; k < n_; ++k)
+      t_[k] = p_[k] > 0 ? ease_[k] * open(k, X) + (conjugate ? G / G_old * t_[k] : 0) : 0;
     return G;
   }
   /// How far along the direction the energy is least; not above 0: it does not fall that way.
@@ -194,7 +199,7 @@ class Search {
   double descend(double X, bool& conjugate) {
     double tau = still_ ? 0 : way(X);
     if (!still_ && !(tau > 0)) {  // what was conjugate on other cells is none on these: straight down
-      for (std::size_t k = 0; k < n_; ++k) t_[k] = p_[k] > 0 ? open(k, X) : 0;
+      for (std::size_t k = 0; k < n_; ++k) t_[k] = p_[k] > 0 ? ease_[k] * open(k, X) : 0;
       tau = std::max(0.0, way(X));
     }
     old_ = p_;
@@ -203,7 +208,7 @@ class Search {
       if (old_[k] > 0) p_[k] = std::max(0.0, old_[k] - tau * t_[k]);
       else if (std::isfinite(gap_[k]) && open(k, X) < 0) {
         // Where pressed cells fit each other there is no step to take from: as far as the cell alone would give way.
-        p_[k] = tau > 0 ? std::max(0.0, -tau * open(k, X)) : -open(k, X) / own_[k];
+        p_[k] = tau > 0 ? std::max(0.0, -tau * ease_[k] * open(k, X)) : -open(k, X) / own_[k];
         conjugate = false;
       }
     }
@@ -241,8 +246,9 @@ class Search {
   std::vector<WindowInfluence> influence_;
   std::size_t n_ = 0;
   bool still_ = false;  ///< the pressed cells fit each other to rounding
-  /// own_: displacement of a cell under its own pressure of 1.
-  std::vector<double> gap_, area_, own_, lever_, p_, u_, t_, q_, old_;
+  /// own_: displacement of a cell under its own pressure of 1; ease_: that of the stiffest cell over it; weight_: area
+  /// times ease.
+  std::vector<double> gap_, area_, own_, ease_, weight_, lever_, p_, u_, t_, q_, old_;
 };
 
 }  // namespace

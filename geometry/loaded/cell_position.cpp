@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 
 #include "geometry/base/angle.h"
@@ -51,25 +52,14 @@ class Cells {
   }
   [[nodiscard]] bool empty() const { return windows_.empty(); }
 
-  /// Shares the load, fitting the windows to what presses, on coarse cells first.
+  /// Shares the load, fitting the windows to what presses, on coarse cells first. Teeth that stand off while others
+  /// carry are left out of the fine ones, and come back where they turn out to be inside the approach.
   Result<CellPressures> share() {
-    for (const int side : {kCoarse, 1}) {
-      for (ToothWindow& w : windows_) fill(w, kColumns / side, kRows / side);
-      int fit = 0;
-      for (; fit < kMostFits; ++fit) {
-        last_.pressure.clear();
-        make_problem();
-        auto found = motions(force());
-        if (!found) return found.error();
-        last_ = *found;
-        if (const auto known = above_first_touch(); !known) return known.error();
-        const auto changed = refit(*found, side == 1);
-        if (!changed) return changed.error();
-        if (!*changed) break;
-      }
-      if (fit == kMostFits) return fail("{}", outgrown());
-      if (side > 1) drop_idle();
-    }
+    if (const auto fits = fit(kCoarse); !fits) return fits.error();
+    drop_idle();
+    do
+      if (const auto fits = fit(1); !fits) return fits.error();
+    while (bring_back());
     return last_;
   }
   [[nodiscard]] double force() const { return load_.torque_nmm / bodies_.lever; }
@@ -94,6 +84,23 @@ class Cells {
   }
 
  private:
+  /// @param side  cells of a side that are one
+  Status fit(int side) {
+    for (ToothWindow& w : windows_) fill(w, kColumns / side, kRows / side);
+    for (int round = 0; round < kMostFits; ++round) {
+      last_.pressure.clear();
+      make_problem();
+      auto found = motions(force());
+      if (!found) return found.error();
+      last_ = *found;
+      if (const auto known = above_first_touch(); !known) return known.error();
+      const auto changed = refit(*found, side == 1);
+      if (!changed) return changed.error();
+      if (!*changed) return Ok{};
+    }
+    return fail("{}", outgrown());
+  }
+
   void fill(ToothWindow& w, int columns, int rows) const {
     CellWindow& c = w.cells;
     c = {columns, rows, 2 * w.site.half_x / columns, 2 * w.site.half_y / rows, {}, {}, {}, {}};
@@ -113,13 +120,15 @@ class Cells {
     problem_.compliance = half_space_compliance(bodies_.gear.E, bodies_.gear.nu) +
                           half_space_compliance(bodies_.pinion.E, bodies_.pinion.nu);
     double least = kNoMaterial;
-    for (const ToothWindow& w : windows_) least = std::min(least, first_touch(w.cells));
+    for (const ToothWindow& w : windows_)
+      least = std::min({least, first_touch(w.cells), w.site.first_gap / w.site.first_lever});
+    zero_ = bodies_.from_touch ? 0 : least;
     std::vector<Eigen::Triplet<double>> weights;
     int cell = 0, stations = 0;
     std::vector<std::array<int, 2>> first;  // station of gear and pinion of every window
     for (const ToothWindow& w : windows_) {
       problem_.windows.push_back(w.cells);
-      if (!bodies_.from_touch) count_from(least, problem_.windows.back());
+      count_from(zero_, problem_.windows.back());
       const ToothBody* bodies[2] = {bodies_.rings[w.site.ring].gear, bodies_.rings[w.site.ring].pinion};
       first.push_back({stations, stations + bodies[0]->sector.columns * bodies[0]->sector.rows});
       for (std::size_t k = 0; k < w.cells.size(); ++k, ++cell) {
@@ -175,13 +184,26 @@ class Cells {
     return sum;
   }
 
+  /// The approach at which a tooth touches first, as far as cells or its site know it.
+  [[nodiscard]] double nearest(const ToothWindow& w) const { return std::min(first_touch(w), first_of(w.site)); }
   /// Leaves out the teeth that stand off while others carry.
   void drop_idle() {
     double first = kNoMaterial;
-    const auto nearest = [&](const ToothWindow& w) { return std::min(first_touch(w), first_of(w.site)); };
     for (const ToothWindow& w : windows_) first = std::min(first, nearest(w));
-    std::erase_if(windows_,
-                  [&](const ToothWindow& w) { return nearest(w) - first > kIdle * last_.approach + std::abs(shift_); });
+    const auto idle = std::stable_partition(windows_.begin(), windows_.end(), [&](const ToothWindow& w) {
+      return !(nearest(w) - first > kIdle * last_.approach + std::abs(shift_));
+    });
+    std::move(idle, windows_.end(), std::back_inserter(idle_));
+    windows_.erase(idle, windows_.end());
+  }
+  /// Takes back those that lie inside the approach. False: none does.
+  bool bring_back() {
+    const auto inside = std::stable_partition(
+        idle_.begin(), idle_.end(), [&](const ToothWindow& w) { return nearest(w) > zero_ + last_.approach; });
+    const bool any = inside != idle_.end();
+    std::move(inside, idle_.end(), std::back_inserter(windows_));
+    idle_.erase(inside, idle_.end());
+    return any;
   }
 
   /// Approach and, where the pinion is free, its shift: the rest grows with the shift, so its zero is closed in, from
@@ -238,7 +260,7 @@ class Cells {
   /// Cells see the place where a tooth touches first from their own middles on. True: they miss more of its overlap
   /// than they see, as at a corner under stiff teeth.
   [[nodiscard]] bool misses_first(const ToothWindow& w, double approach) const {
-    const double first = first_of(w.site), seen = first_touch(w);
+    const double first = first_of(w.site) - zero_, seen = first_touch(w) - zero_;
     return first < approach && seen - first > approach - seen;
   }
 
@@ -270,8 +292,8 @@ class Cells {
               "at {:.4f} deg tooth {} of {} touches on a corner without size: it overlaps by {:.3g} mm of an approach "
               "of {:.3g} mm, and cells of {:.2g} mm, the smallest, see {:.3g} mm of it: a larger torque or softer "
               "teeth are needed",
-              degrees(phi_), site.tooth, bodies_.rings[site.ring].ring, found.approach - first_of(site), found.approach,
-              std::max(c.dx, c.dy), std::max(0.0, found.approach - first_touch(w)));
+              degrees(phi_), site.tooth, bodies_.rings[site.ring].ring, found.approach + zero_ - first_of(site),
+              found.approach, std::max(c.dx, c.dy), std::max(0.0, found.approach + zero_ - first_touch(w)));
         site.x = site.first.x(), site.y = site.first.y();
         site.half_x = std::max(site.half_x / kCloser, kSmallest / 2);
         site.half_y = std::max(site.half_y / kCloser, kSmallest / 2);
@@ -333,7 +355,9 @@ class Cells {
   const CellBodies& bodies_;
   const Load& load_;
   double phi_, shift_ = 0;
+  double zero_ = 0;  ///< the approach counts from there
   std::vector<ToothWindow> windows_;
+  std::vector<ToothWindow> idle_;  ///< left out
   CellProblem problem_;
   CellPressures last_;
 };

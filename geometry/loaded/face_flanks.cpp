@@ -4,16 +4,18 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/loaded/cell_contact.h"
 #include "geometry/loaded/half_space.h"
 
 namespace toothpath::loaded {
 namespace {
 
+constexpr double kCorner = 1.5;    // half widths of a line's strip: the first rectangle of a corner
 constexpr double kEllipses = 1.3;  // the first rectangle is so much wider than the ellipse of Hertz
 
 }  // namespace
 
-FaceFlanks::FaceFlanks(const LoadedPair& pair, double force, double phi) : pair_(pair), phi_(phi) {
+FaceFlanks::FaceFlanks(const LoadedPair& pair, double force, double phi, double approach_mm) : pair_(pair), phi_(phi) {
   bodies_ = {pair.options.gear,
              pair.options.pinion,
              pair.modulus,
@@ -29,16 +31,30 @@ FaceFlanks::FaceFlanks(const LoadedPair& pair, double force, double phi) : pair_
              {}};
   for (const PairRing& ring : pair.rings)
     bodies_.rings.push_back({ring.ring, &ring.gear, &ring.pinion, &ring.gear_ends, &ring.pinion_ends, 1});
-  for (std::size_t r = 0; r < pair.rings.size(); ++r) {
-    const PairRing& ring = pair.rings[r];
+  std::vector<std::vector<ContactLine>> lines(pair.rings.size());
+  double least = kNoMaterial;
+  const auto options_of = [&](const PairRing& ring) {
     LineOptions options;
     options.segment_mm = pair.options.segment_mm;
     options.pinion = &ring.moved;
     options.removal = &ring.removal;
-    for (const auto& line : contact_lines(ring.surface, ring.ring, pair.side, phi, ring.bounds, options)) {
+    return options;
+  };
+  for (std::size_t r = 0; r < pair.rings.size(); ++r) {
+    const PairRing& ring = pair.rings[r];
+    lines[r] = contact_lines(ring.surface, ring.ring, pair.side, phi, ring.bounds, options_of(ring));
+    for (const ContactLine& line : lines[r]) {
       line_mm_ += line.length;
       add(r, line, force);
+      least = std::min(least, line.least_gap);
     }
+  }
+  for (std::size_t r = 0; r < pair.rings.size(); ++r) {
+    const PairRing& ring = pair.rings[r];
+    LineOptions options = options_of(ring);
+    options.edges = {least + approach_mm, &ring.moved, &pair.options.gap};
+    for (const auto& edge : edges_near(ring.surface, ring.ring, pair.side, phi, ring.bounds, options, lines[r]))
+      add_edge(r, edge, force);
   }
 }
 
@@ -68,14 +84,36 @@ void FaceFlanks::add(std::size_t ring, const ContactLine& line, double force) {
     if (gap(line.from_B + step * k) < gap(line.from_B + step * best)) best = k;
   LinePlace middle = places.at(line.from_B + step * best);
   places.bend(middle);
+  const auto sides =
+      ellipse_sides(force, pair_.modulus, middle.curvature, middle.curvature * std::max(middle.roundness, 0.0));
+  CellSite& added = add_site(site, std::move(middle));
+  added.half_x = kEllipses * sides[0], added.half_y = kEllipses * std::min(sides[1], line.length);
+}
+
+CellSite& FaceFlanks::add_site(CellSite site, LinePlace middle) {
   site.point = middle.point, site.normal = middle.normal, site.curvature = middle.curvature;
   site.across = middle.steepest;
   site.along = middle.normal.cross(site.across).normalized();
-  const auto sides =
-      ellipse_sides(force, pair_.modulus, middle.curvature, middle.curvature * std::max(middle.roundness, 0.0));
-  site.half_x = kEllipses * sides[0], site.half_y = kEllipses * std::min(sides[1], line.length);
-  sites_.push_back(site);
   middles_.push_back(std::move(middle));
+  return sites_.emplace_back(site);
+}
+
+void FaceFlanks::add_edge(std::size_t ring, const ContactLine& edge, double force) {
+  CellSite site;
+  site.ring = ring, site.tooth = edge.tooth, site.id = sites_.size();
+  const LineOfTooth places = line_of(site);
+  double theta = edge.segments.front().theta;
+  const auto found = places.nearest(edge.from_B, theta);
+  if (!found) return;
+  LinePlace middle = *found;
+  places.bend(middle);
+  const ContactBounds& bounds = pair_.rings[ring].bounds;
+  const double wide =
+      hertz_line(force / (bounds.outer_mm - bounds.inner_mm), pair_.modulus, middle.curvature).half_width;
+  site.first = Vec2::Zero(), site.first_gap = segment(site, places, middle).gap;
+  CellSite& added = add_site(site, std::move(middle));
+  // A corner presses about as wide as a line would, and a little longer; the windows are fitted.
+  added.half_x = kCorner * wide, added.half_y = 2 * kCorner * wide;
 }
 
 LinePlace FaceFlanks::place(const CellSite& site, const LineOfTooth& line, double x, double y,

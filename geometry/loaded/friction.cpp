@@ -33,7 +33,8 @@ Friction friction_of(const std::function<Turning(int ring)>& turning, const Load
   for (const PressedSegment& s : position.segments) {
     if (!(s.force > 0)) continue;
     const Turning turns = turning(s.place.ring);
-    const Vec3 v = sliding(turns, s.place.nearest);
+    Vec3 v = sliding(turns, s.place.nearest);
+    if (s.place.on_edge) v -= s.place.normal * v.dot(s.place.normal);  // an edge also comes nearer, or leaves
     const double speed = v.norm();
     if (!(speed > turns.still_mm)) continue;
     const Vec3 on_gear = v * (mu * s.force / speed);
@@ -47,13 +48,11 @@ Friction friction_of(const std::function<Turning(int ring)>& turning, const Load
 }
 
 Friction friction_of(const LoadedPair& pair, const LoadedPosition& position, double mu) {
-  double load = 0;
-  for (const PressedSegment& s : position.segments) load += s.force;
   const auto turning = [&](int ring) {
     return turning_of(
         pair, *std::find_if(pair.rings.begin(), pair.rings.end(), [&](const auto& r) { return r.ring == ring; }));
   };
-  return friction_of(turning, position, load * pair.lever, mu);
+  return friction_of(turning, position, position.gear_torque_nmm, mu);
 }
 
 }  // namespace toothpath::loaded

