@@ -208,6 +208,10 @@ void BevelFlanks::add(const Tooth& tooth) {
       middles_.push_back(tooth.grid[k]);
       return;
     }
+  const WheelPlace& any = tooth.grid[order.front()];
+  const double lever = pair_.options.torque_on_pinion ? any.lever_1 : any.lever_2,
+               approach = (tooth.first.error - first_) * any.lever_1 / (lever / pair_.lever);
+  if (approach < siteless_.approach_mm) siteless_ = {tooth.tooth, approach};
 }
 
 CellPlace BevelFlanks::cell_at(const CellSite& site, int half, const WheelPlace& at, BevelInverse& start) const {

@@ -22,6 +22,13 @@ class BevelFlanks final : public loaded::CellFlanks {
   [[nodiscard]] double line_mm() const override { return 0; }
   /// sigma times the turn of the rigid pinion beyond the exact ratio, rad: there the gaps count from. With sites only.
   [[nodiscard]] double first_turn() const { return first_; }
+  /// A tooth that comes near but has no site, since its flanks cannot be continued about any place of theirs; and the
+  /// approach at which it would touch.
+  struct Siteless {
+    int tooth = 0;
+    double approach_mm = std::numeric_limits<double>::infinity();
+  };
+  [[nodiscard]] const Siteless& nearest_siteless() const { return siteless_; }
   [[nodiscard]] std::vector<loaded::CellPlace> places(const loaded::CellSite& site, int columns,
                                                       int rows) const override;
 
@@ -62,6 +69,7 @@ class BevelFlanks final : public loaded::CellFlanks {
   loaded::CellBodies bodies_;
   std::vector<loaded::CellSite> sites_;
   std::vector<WheelPlace> middles_;  ///< of the sites
+  Siteless siteless_;
 };
 
 }  // namespace toothpath::loaded_bevel

@@ -75,7 +75,14 @@ Result<LoadedPosition> loaded_position(const LoadedBevelPair& pair, const loaded
   if (!(load.torque_nmm > 0) || !std::isfinite(load.torque_nmm))
     return fail("torque = {:g} N m on the {} is not above 0", load.torque_nmm / 1000,
                 pair.options.torque_on_pinion ? "pinion" : "wheel");
-  auto found = loaded::cell_position(BevelFlanks(pair, phi_1), load, phi_1);
+  const BevelFlanks flanks(pair, phi_1);
+  auto found = loaded::cell_position(flanks, load, phi_1);
+  if (const auto& without = flanks.nearest_siteless(); found && found->approach_mm > without.approach_mm)
+    return fail(
+        "at {:.4f} deg under {:g} N m the flanks approach by {:.4g} mm, and tooth {} touches from {:.4g} mm on: its "
+        "walls "
+        "cannot be continued about any place where they meet. A smaller torque or other modifications would help",
+        degrees(phi_1), load.torque_nmm / 1000, found->approach_mm, without.tooth, without.approach_mm);
   if (found && !(found->approach_mm < kFarthestGap))
     return fail(
         "at {:.4f} deg under {:g} N m the flanks approach by {:.4g} mm: beyond {:g} mm, where linear theory and the "

@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <map>
+#include <utility>
 
+#include "geometry/base/angle.h"
 #include "geometry/loaded/cell_contact.h"
 #include "geometry/loaded/complementarity.h"
 #include "geometry/loaded/half_space.h"
@@ -48,6 +50,66 @@ TEST(LoadedBevelPair, BalanceAndComplementarity) {
       EXPECT_NE(ratio, 1);
     }
   }
+}
+
+/// The greatest overlap of a tooth that carries nothing, mm, by a roll of the rigid walls on a grid of its own, ends
+/// and tips and all; and how many such teeth were judged.
+std::pair<double, int> overlap_without_force(const LoadedBevelPair& pair, const loaded::LoadedPosition& p,
+                                             double phi_1) {
+  constexpr int kAlong = 25, kUp = 13;
+  const double first = loaded_bevel::BevelFlanks(pair, phi_1).first_turn();
+  std::map<std::pair<int, int>, double> force;
+  for (const auto& s : p.segments) force[{s.place.ring, s.place.tooth}] += s.force;
+  double worst = 0;
+  int judged = 0;
+  for (int h = 0; h < static_cast<int>(pair.halves.size()); ++h)
+    for (int tooth = -6; tooth <= 6; ++tooth) {
+      if (force[{h, tooth}] > 0) continue;
+      const auto& own = pair.pair.wheel().halves()[static_cast<std::size_t>(h)];
+      const double phi_2 = -phi_1 / pair.pair.ratio() + tooth * pair.pair.wheel().pitch();
+      bool met_any = false;
+      for (int i = 0; i < kUp; ++i)
+        for (int k = 0; k < kAlong; ++k) {
+          const auto place =
+              pair.pair.wheel_place(h, pair.sigma, own.ell_from + (own.ell_to - own.ell_from) * k / (kAlong - 1),
+                                    pair.pair.lowest(h) + (pair.pair.highest() - pair.pair.lowest(h)) * i / (kUp - 1));
+          if (!place) continue;
+          bevel_gear::BevelInverse start;
+          const auto met = pair.pair.touch(h, pair.sigma, place->point, phi_2, start);
+          if (!met || !met->on_flank) continue;
+          met_any = true;
+          const double turned = pair.sigma * wrapped(met->turn - pair.pair.nominal_turn(phi_2));
+          const double lever = std::abs(place->point.x() * place->normal.y() - place->point.y() * place->normal.x());
+          double open = (turned - first) * pair.pair.lever(*place, phi_2) - lever / pair.lever * p.approach_mm;
+          if (open > 0) continue;
+          const auto& half = pair.halves[static_cast<std::size_t>(h)];
+          const auto on_wheel = half.wheel.weights(place->ell, place->height),
+                     on_pinion = half.pinion.weights(met->ell, met->height);
+          for (const auto& s : p.segments) {
+            if (!(s.force > 0) || s.place.ring != h) continue;
+            const int offset = tooth - s.place.tooth;
+            open += s.force * (half.wheel.remainder_at(on_wheel, half.wheel.weights(s.place.r, s.place.z), offset) +
+                               half.pinion.remainder_at(on_pinion, half.pinion.weights(s.place.Z, s.place.R), -offset));
+          }
+          worst = std::max(worst, -open);
+        }
+      if (met_any) ++judged;
+    }
+  return {worst, judged};
+}
+
+TEST(LoadedBevelPair, NoToothIsLeftOut) {
+  int judged = 0;
+  for (const int sigma : {1, -1}) {
+    const auto pair = single_pair(sigma, coarse_bodies());
+    for (const auto& [torque, phase] : {std::pair(20.0, 0.15), {200.0, 0.55}, {200.0, 0.9}, {1500.0, 0.35}}) {
+      const auto p = position_of(pair, held(torque), phase);
+      const auto [worst, teeth] = overlap_without_force(pair, p, pair.pair.pinion().pitch() * phase);
+      EXPECT_LT(worst, 2e-6 * p.approach_mm) << sigma << ", " << torque << " N m, phase " << phase;
+      judged += teeth;
+    }
+  }
+  EXPECT_GT(judged, 8);
 }
 
 TEST(LoadedBevelPair, TheAxialForcesAreThoseOfTheNormals) {
