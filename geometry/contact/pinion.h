@@ -14,9 +14,9 @@ namespace toothpath::contact {
 
 /// Where the pinion stands against its nominal place in the housing.
 struct Misalignment {
-  double offset_mm = 0;      ///< dE, along b
-  double axial_mm = 0;       ///< dL, along the pinion's axis, away from the gear's axis
-  double angle_rad = 0;      ///< dgamma: error of the shaft angle, about the foot point of the common perpendicular
+  double offset_mm = 0;  ///< dE, along b
+  double axial_mm = 0;   ///< dL, along the pinion's axis, away from the gear's axis
+  double angle_rad = 0;  ///< dgamma: error of the shaft angle, about the foot of the common perpendicular of the axes
   double gear_axial_mm = 0;  ///< dG: the gear along its own axis, away from the pinion
   [[nodiscard]] bool none() const { return offset_mm == 0 && axial_mm == 0 && angle_rad == 0 && gear_axial_mm == 0; }
 };
@@ -105,6 +105,9 @@ Pinion<S> make_pinion(const face_gear::FaceGearSurface<S>& gear, int pinion_teet
   p.d = Vec3T<S>(S(-Cg), S(0), S(-Sg));
   p.b = gear.b();
   p.foot = gear.b() * S(gear.E + S(moved.offset_mm)) + gear.d() * S(w.r_p - p.r_p) + p.a * S(moved.axial_mm);
+  // The axis lies lower than the shaper's, and so does the foot of its perpendicular on the gear's: on the axis this is
+  // a place aside from Z_1 = 0 where the shafts are not square.
+  p.foot += (gear.a() - p.a) * S(gear.Cg * (w.r_p - p.r_p) / gear.Sg);
   p.foot[2] += S(moved.gear_axial_mm);
   return p;
 }

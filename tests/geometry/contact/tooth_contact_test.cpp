@@ -53,6 +53,25 @@ std::pair<S, S> misfit(const face_gear::FaceGearSurface<S>& f, const contact::Pi
   return {S(sqrt(S(dp.dot(dp))) + sqrt(S(on_path.dot(on_path)))), S(sqrt(S(dn.dot(dn))))};
 }
 
+/// An error of the shaft angle turns the pinion's axis about its own foot of the common perpendicular of both axes,
+/// also where the pinion has fewer teeth than the shaper and its axis lies lower.
+TEST(Pinion, ShaftAngleErrorTurnsAboutTheFoot) {
+  for (const char* name : {"offset_15", "gamma_75_mixed", "gamma_120"}) {
+    const auto c = case_named(name);
+    const auto f = face_gear::make_surface<double>(c.parameters(), c.beta());
+    // Where an axis comes nearest to the z axis: both directions lie in the plane of x and z.
+    const auto foot = [](const contact::Pinion<double>& pinion) {
+      return Vec3(pinion.foot - pinion.a * (pinion.foot.x() / pinion.a.x()));
+    };
+    const int teeth = f.shaper.teeth - 4;
+    const auto stands = contact::make_pinion(f, teeth), turned = contact::make_pinion(f, teeth, {0, 0, 0.02});
+    EXPECT_NEAR((foot(stands) - foot(turned)).norm(), 0, 1e-12) << name;
+    EXPECT_NEAR(std::acos(stands.a.dot(turned.a)), 0.02, 1e-9);
+    // Sections are counted from there on, as before.
+    EXPECT_NEAR((foot(stands) - stands.foot).dot(stands.a), (foot(turned) - turned.foot).dot(turned.a), 1e-12);
+  }
+}
+
 template <typename S>
 void expect_common_points(double tolerance) {
   using std::abs;
