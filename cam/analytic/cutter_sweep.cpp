@@ -18,8 +18,8 @@ constexpr double kWreckShare =
     0.5;  // a ball whose centre is this near, in radii, is bounded by all that can be asked for
 constexpr int kCutterHalvings = 24;
 constexpr std::size_t kQueriesOfWreck = 1000;  // of a motion that is too deep: each of these costs the bound a quarter
-constexpr int kLooksAbove = 3;           // rows at which the whole flute above is looked at before each row is
-constexpr double kShortestPiece = 1e-6;  // mm: shorter pieces are not halved
+constexpr int kLooksAbove = 3;                 // rows at which the whole flute above is looked at before each row is
+constexpr double kShortestPiece = 1e-6;        // mm: shorter pieces are not halved
 
 /// Heights of the flute in ball radii: close above the centre first, where the flute leaves the contact slowly.
 std::vector<double> heights(double R, double top) {

@@ -159,16 +159,15 @@ ByteReader shards_reader() {
   for (int k = 0; k < count_of(facts); ++k) dhfg += sample_line(facts, k, found) + "\n";
   const std::string cost =
       R"("shift_um":1,"rms_um":0.5,"deepest_um":1.0,"left_um":2,"gouge_um":1,"gouge_bound_um":1.1,"within":true)";
-  std::string costs =
-      R"({"study":"machine-errors","version":1,"key":"k","samples":4,"seed":1,"job":"j","machine":"m",)"
-      R"("teeth":60,"verified":true,"nominal":{)" +
-      cost +
-      R"(},"errors":[{"error":"A.pivot","size":5,"unit":"um","source":"s","meaning":"x"}]})"
-      "\n";
+  std::string costs = R"({"study":"machine-errors","version":1,"key":"k","samples":4,"seed":1,"job":"j","machine":"m",)"
+                      R"("teeth":60,"verified":true,"nominal":{)" +
+                      cost +
+                      R"(},"errors":[{"error":"A.pivot","size":5,"unit":"um","source":"s","meaning":"x"}]})"
+                      "\n";
   for (int k = 0; k < 4; ++k)
     costs += fmt::format(R"({{"sample":{},"error":"{}","tooth":3,"magnitude":1.5,{}}})", k,
-                          k % 2 == 0 ? "A.pivot" : errors::kAll, cost) +
-              "\n";
+                         k % 2 == 0 ? "A.pivot" : errors::kAll, cost) +
+             "\n";
   return {"shards",
           "{}[]\":,.+-0123456789etruefals\n",
           {dhfg, costs},
