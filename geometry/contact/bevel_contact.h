@@ -126,14 +126,27 @@ class BevelPair {
 
  private:
   BevelPair() = default;
+  struct Starts {
+    bevel_gear::BevelInverse wheel, pinion;
+  };
+  /// The search down from a low place, as far as it has come.
+  struct Descent {
+    BevelNear at;
+    Vec2 step;
+    int halved = 0;   ///< how often the steps of the grid are
+    double rise = 0;  ///< greatest difference to the places about it, a step away: lower ones lie kBelow times it below
+    Starts starts{};
+  };
   [[nodiscard]] std::optional<BevelTouch> touch_of(int half, int sigma, const Vec3& point,
                                                    const bevel_gear::ConePoint& q, bool on_flank,
                                                    bevel_gear::BevelInverse& start) const;
   /// error_at of the place (ell, height) of the wheel; one beyond an edge of either flank moves onto it first. Empty:
   /// there is none.
+  /// @param starts  of the inversions, updated
   [[nodiscard]] std::optional<double> error_within(int half, int sigma, double phi_2, Vec2& place,
-                                                   bevel_gear::BevelInverse& start) const;
-  [[nodiscard]] BevelNear downhill(int half, int sigma, double phi_2, BevelNear at, Vec2 step, int halvings) const;
+                                                   Starts& starts) const;
+  /// From a low place on until its steps are halved so often in all.
+  void downhill(int half, int sigma, double phi_2, Descent& from, int halvings) const;
   [[nodiscard]] bool within_edges(const bevel_gear::BevelHalf& half, const bevel_gear::ConePoint& q) const;
   const bevel_gear::BevelGear *pinion_ = nullptr, *wheel_ = nullptr;
   std::vector<bevel_gear::BevelHalf> pinion_halves_;  ///< with the change

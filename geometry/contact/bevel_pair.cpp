@@ -10,13 +10,22 @@
 namespace toothpath::contact {
 namespace {
 
-constexpr double kAtEdge = 1e-9;  // of the cone distance: points on an edge count as on the flank
-constexpr double kOnEdge = 1e-9;  // mm: places that slide along an edge lie on it
-constexpr double kWay = 1e-4;     // mm: step of the derivatives with which they come back to it
-constexpr int kMostRounds = 10;   // of Newton
+constexpr double kAtEdge = 1e-9;             // of the cone distance: points on an edge count as on the flank
+constexpr double kOnEdge = 1e-9;             // mm: places that slide along an edge lie on it
+constexpr double kTurn = 1e-6, kWay = 1e-4;  // rad, mm: steps of the derivatives with which they come back to it
+constexpr int kMostRounds = 10;              // of Newton
 constexpr double kBelow =
     2;  // a place between those of a grid lies at most so many differences to its neighbours below
+constexpr int kFirstHalvings = 4;   // before low places are compared with each other
 constexpr double kEarlier = 1e-11;  // rad: a place that is met less earlier is no better
+
+/// From a place near by where one is known; updated by who asks.
+std::optional<bevel_gear::BevelInverse> inverse_from(const bevel_gear::BevelWall<double>& wall, double ell,
+                                                     double height, const bevel_gear::BevelInverse& start) {
+  if (start.iterations > 0)
+    if (auto found = bevel_gear::bevel_inverse(wall, ell, height, start)) return found;
+  return bevel_gear::bevel_inverse(wall, ell, height);
+}
 
 Mat3 turn_about_z(double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix(); }
 
@@ -92,9 +101,7 @@ bool BevelPair::within_edges(const bevel_gear::BevelHalf& half, const bevel_gear
 std::optional<BevelTouch> BevelPair::touch_of(int half, int sigma, const Vec3& point, const bevel_gear::ConePoint& q,
                                               bool on_flank, bevel_gear::BevelInverse& start) const {
   const bevel_gear::BevelWall<double>& wall = pinion_halves_[static_cast<std::size_t>(half)].wall(sigma);
-  auto found = start.iterations > 0 ? bevel_gear::bevel_inverse(wall, q.ell, q.height, start)
-                                    : bevel_gear::bevel_inverse(wall, q.ell, q.height);
-  if (!found && start.iterations > 0) found = bevel_gear::bevel_inverse(wall, q.ell, q.height);
+  const auto found = inverse_from(wall, q.ell, q.height, start);
   if (!found || found->p < wall.cutter.p_A) return std::nullopt;
   start = *found;
   // Pinion tooth between its spaces -1 and 0, turned by half a pitch to azimuth 0: wall L of space 0, wall U of space
@@ -131,57 +138,67 @@ std::optional<double> BevelPair::error_at(int half, int sigma, const Vec3& point
   return sigma * wrapped(*turn - nominal_turn(phi_2));
 }
 
-std::optional<double> BevelPair::error_within(int half, int sigma, double phi_2, Vec2& place,
-                                              bevel_gear::BevelInverse& start) const {
+std::optional<double> BevelPair::error_within(int half, int sigma, double phi_2, Vec2& place, Starts& starts) const {
   const bevel_gear::BevelHalf &own = wheel_->halves()[static_cast<std::size_t>(half)],
                               &mate = pinion_->halves()[static_cast<std::size_t>(half)];
-  const auto met_at = [&](const Vec2& at) -> std::optional<std::pair<BevelPlace, Vec2>> {
-    const auto on_wheel = wheel_place(half, sigma, at.x(), at.y());
-    if (!on_wheel || on_wheel->p < own.wall(sigma).cutter.p_B) return std::nullopt;
-    const auto q = on_pinion(on_wheel->point, phi_2);
-    return std::pair(*on_wheel, Vec2(q.ell, q.height));
+  const bevel_gear::BevelWall<double>& wall = own.wall(sigma);
+  const auto met_at = [&](const Vec3& point) {
+    const auto q = on_pinion(point, phi_2);
+    return Vec2(q.ell, q.height);
+  };
+  // By what both places, on the wheel and on the pinion, change where a coordinate of the wall does.
+  const auto change = [&](const bevel_gear::BevelInverse& at, double turn, double way, Eigen::Matrix2d& on_wheel,
+                          Eigen::Matrix2d& on_mate, int column, const Vec2& q) {
+    const Vec3 point = wall.point(at.beta + turn, at.p + way).p;
+    const auto there = bevel_gear::cone_point(point, wheel_->sin_delta(), wheel_->cos_delta());
+    on_wheel.col(column) = Vec2(there.ell, there.height) - place;
+    on_mate.col(column) = met_at(point) - q;
   };
   for (int round = 0; round < kMostRounds; ++round) {
     place = Vec2(std::clamp(place.x(), own.ell_from, own.ell_to), std::min(place.y(), highest()));
-    const auto here = met_at(place);
-    if (!here) return std::nullopt;
-    const Vec2& q = here->second;
+    const auto found = inverse_from(wall, place.x(), place.y(), starts.wheel);
+    if (!found || found->p < wall.cutter.p_B) return std::nullopt;
+    starts.wheel = *found;
+    const Vec3 point = wall.point(found->beta, found->p).p;
+    const Vec2 q = met_at(point);
     const Vec2 back(std::clamp(q.x(), mate.ell_from, mate.ell_to) - q.x(),
                     std::min(q.y(), pinion_->parameters().addendum_mm) - q.y());
     if (back.norm() < kOnEdge) {
-      const auto met = touch(half, sigma, here->first.point, phi_2, start);
+      const auto met = touch(half, sigma, point, phi_2, starts.pinion);
       if (!met) return std::nullopt;
       return sigma * wrapped(met->turn - nominal_turn(phi_2));
     }
-    const auto along = met_at(place - Vec2(kWay, 0)), up = met_at(place - Vec2(0, kWay));
-    if (!along || !up) return std::nullopt;
-    Eigen::Matrix2d J;
-    J.col(0) = (q - along->second) / kWay, J.col(1) = (q - up->second) / kWay;
-    const Vec2 step = J.inverse() * back;
+    Eigen::Matrix2d on_wheel, on_mate;
+    change(*found, kTurn, 0, on_wheel, on_mate, 0, q);
+    change(*found, 0, -kWay, on_wheel, on_mate, 1, q);
+    const Vec2 step = on_wheel * (on_mate.inverse() * back);
     if (!step.allFinite() || step.norm() > wheel_->parameters().outer_transverse_module_mm) return std::nullopt;
     place += step;
   }
   return std::nullopt;
 }
 
-BevelNear BevelPair::downhill(int half, int sigma, double phi_2, BevelNear at, Vec2 step, int halvings) const {
-  Vec2 best(at.ell, at.height);
-  bevel_gear::BevelInverse start;
-  for (int halved = 0; halved < halvings;) {
-    bool moved = false;
-    const Vec2 centre = best;
-    for (int i = -1; i <= 1; ++i)
-      for (int j = -1; j <= 1; ++j) {
-        if (i == 0 && j == 0) continue;
-        Vec2 place = centre + Vec2(i * step.x(), j * step.y());
-        const auto e = error_within(half, sigma, phi_2, place, start);
-        if (e && *e < at.error - kEarlier) at = {*e, place.x(), place.y()}, best = place, moved = true;
-      }
+void BevelPair::downhill(int half, int sigma, double phi_2, Descent& from, int halvings) const {
+  const auto earlier = [&](const Vec2& centre, const Vec2& way) {
+    Vec2 place = centre + way.cwiseProduct(from.step);
+    const auto e = error_within(half, sigma, phi_2, place, from.starts);
+    if (e) from.rise = std::max(from.rise, *e - from.at.error);
+    if (!e || !(*e < from.at.error - kEarlier)) return false;
+    from.at = {*e, place.x(), place.y()};
+    return true;
+  };
+  Vec2 last = Vec2::Zero();  // way that led on: it is tried first
+  while (from.halved < halvings) {
+    const Vec2 centre(from.at.ell, from.at.height);
+    from.rise = 0;
+    bool moved = !last.isZero() && earlier(centre, last);
+    if (!moved)
+      for (int k = 0; k < 9; ++k)
+        if (const Vec2 way(k / 3 - 1, k % 3 - 1); !way.isZero() && earlier(centre, way)) moved = true, last = way;
     // On along what is found, by steps as long as at the beginning again.
-    if (!moved) step /= 2, ++halved;
-    else if (halved > 0) step *= 2, --halved;
+    if (!moved) from.step /= 2, ++from.halved;
+    else if (from.halved > 0) from.step *= 2, --from.halved;
   }
-  return at;
 }
 
 BevelNear BevelPair::first_met(int half, int sigma, double phi_2, const std::vector<BevelNear>& grid, int columns,
@@ -192,8 +209,7 @@ BevelNear BevelPair::first_met(int half, int sigma, double phi_2, const std::vec
   const auto at = [&](int row, int column) -> const BevelNear& {
     return grid[static_cast<std::size_t>(row * columns + column)];
   };
-  // Low places, and how far below them there may be lower ones.
-  std::vector<std::pair<BevelNear, double>> low;
+  std::vector<Descent> low;
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
       const double here = at(row, column).error;
@@ -204,14 +220,17 @@ BevelNear BevelPair::first_met(int half, int sigma, double phi_2, const std::vec
           lowest_of_all = lowest_of_all && at(i, j).error >= here;
           if (std::isfinite(at(i, j).error)) most = std::max(most, at(i, j).error - here);
         }
-      if (lowest_of_all) low.emplace_back(at(row, column), kBelow * most);
+      if (lowest_of_all) low.push_back({at(row, column), step, 0, most, {}});
     }
-  std::stable_sort(low.begin(), low.end(), [](const auto& a, const auto& b) { return a.first.error < b.first.error; });
+  // All some way down, then those to the end that can still come lowest.
   BevelNear first{std::numeric_limits<double>::infinity(), 0, 0};
-  for (const auto& [from, below] : low) {
-    if (from.error - below > first.error) continue;
-    const BevelNear found = downhill(half, sigma, phi_2, from, step, halvings);
-    if (found.error < first.error) first = found;
+  for (const int so_far : {std::min(kFirstHalvings, halvings), halvings}) {
+    std::stable_sort(low.begin(), low.end(), [](const auto& a, const auto& b) { return a.at.error < b.at.error; });
+    for (Descent& from : low) {
+      if (from.at.error - kBelow * from.rise > first.error) continue;
+      downhill(half, sigma, phi_2, from, so_far);
+      if (from.at.error < first.error) first = from.at;
+    }
   }
   return first;
 }
