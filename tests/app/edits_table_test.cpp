@@ -110,7 +110,8 @@ class Editable : public PlantedProgram {
     if (planes_) return std::nullopt;
     const JudgedPath edited = walk(lines);
     if (!edited.faults().empty()) return INFINITY;
-    const JudgedPath made = walk(lines_);
+    if (!made_) made_ = std::make_unique<JudgedPath>(walk(lines_));
+    const JudgedPath& made = *made_;
     constexpr double kCell = 1;
     const auto cell = [](const Vec3& p) {
       const auto at = [&](int k) { return std::int64_t(std::floor(p[k] / kCell)) + 4096; };
@@ -132,11 +133,15 @@ class Editable : public PlantedProgram {
         const Vec3 p = made.at(m, t).tip;
         if (p.z() > kBlankTop) continue;
         double least = INFINITY;
-        for (int k = 0; k < 27 && least > 0; ++k)
-          if (const auto near = cells.find(cell(p + kCell * Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
-              near != cells.end())
-            for (const std::size_t way : near->second)
-              least = std::min(least, distance_to_segment(p, ways[way].first, ways[way].second));
+        for (int n = 0; n < 27 && least > most; ++n) {  // from the middle outwards
+          const int k = 13 + (n % 2 ? n / 2 + 1 : -n / 2);
+          const auto near = cells.find(cell(p + kCell * Vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1)));
+          if (near == cells.end()) continue;
+          for (const std::size_t way : near->second) {
+            least = std::min(least, distance_to_segment(p, ways[way].first, ways[way].second));
+            if (least <= most) break;
+          }
+        }
         most = std::max(most, least);
       }
     }
@@ -173,6 +178,7 @@ class Editable : public PlantedProgram {
   }
   bool planes_;
   std::string name_;
+  mutable std::unique_ptr<JudgedPath> made_;  ///< the program as it was made
 };
 
 /// Blocks that carry numbers count up again, as the control's editor has them.

@@ -211,10 +211,10 @@ class Planted : public PlantedProgram {
   /// Greatest depth of the ball in the flanks when its centre is here (below 0: it stays away from them), and where.
   [[nodiscard]] std::pair<double, Vec3> deepest(const BruteForceFaceGear& gear, const Vec3& centre) const {
     Random random(5);
-    const auto depth = [&](const Vec3& out) {
-      return gear.least_clearance(centre + kBall * out, -1) * gear.cos_base_helix();
-    };
     double most = -INFINITY, step = 1;
+    const auto depth = [&](const Vec3& out) {  // where it is no more than the most so far: not how much less
+      return gear.least_clearance(centre + kBall * out, most / gear.cos_base_helix()) * gear.cos_base_helix();
+    };
     Vec3 at = -Vec3::UnitZ();
     for (int k = 0; k < 900; ++k, step = k < 200 ? 1 : step * 0.985) {
       const Vec3 out = (step == 1 ? random.vector(1) : Vec3(at + random.vector(step))).normalized();

@@ -83,7 +83,7 @@ double BruteForceFaceGear::least_clearance(const Vec3& point, double enough) con
     double a = start + (minima[n].second - 1) * step, b = a + 2 * step;
     double p = b - golden * (b - a), q = a + golden * (b - a);
     double fp = clearance(point, p), fq = clearance(point, q);
-    for (int k = 0; k < 75; ++k) {  // no smoothness assumed: the sharp tip edge makes kinks
+    for (int k = 0; k < 55; ++k) {  // no smoothness assumed: the sharp tip edge makes kinks
       if (fp <= fq) {
         b = q;
         q = p;
