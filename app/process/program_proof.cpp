@@ -15,6 +15,7 @@
 #include "app/process/proof_limits.h"
 #include "app/process/tooth_copies.h"
 #include "app/report/machine_moves.h"
+#include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
 #include "postproc/controls/of_machine.h"
 
@@ -167,8 +168,8 @@ bool in_space(const GearCheck& gear, const Vec3& tip, int number) {
 }
 
 /// Motions of a text of others belong to the spaces in which they cut; what the text says counts where the tip may lie
-/// there. @param copies  the first tooth of an operation that turned copies follow: all of it goes with most of its
-/// cuts
+/// there. @param copies  the first tooth of an operation that turned copies follow: the copy in space 0 is taken, by
+/// where most of its cuts are
 void place_in_spaces(const GearCheck& gear, bool copies, std::span<path::ToolMotion> motions) {
   const int teeth = gear.teeth();
   const auto counted = [&](int space) { return ((space % teeth) + teeth) % teeth; };
@@ -184,7 +185,10 @@ void place_in_spaces(const GearCheck& gear, bool copies, std::span<path::ToolMot
   const int shift = std::max_element(shifts.begin(), shifts.end(), [](const auto& a, const auto& b) {
                       return a.second < b.second;
                     })->first;
-  for (path::ToolMotion& m : motions) m.tooth = counted(m.tooth + shift);
+  const Mat3 back = Eigen::AngleAxisd(-2 * kPi * shift / teeth, Vec3::UnitZ()).toRotationMatrix();
+  if (shift == 0) return;
+  for (path::ToolMotion& m : motions)
+    for (Vec3* v : {&m.tip_from, &m.tip_to, &m.axis_from, &m.axis_to}) *v = back * *v;
 }
 
 readback::Followed follower(const ProgramText& program, const readback::NcControl& control, const GearCheck& gear) {
