@@ -96,20 +96,27 @@ Result<BevelEaseOff> bevel_ease_off(const BevelPair& pair, int sigma, int rows, 
   return out;
 }
 
-Edges bevel_edges_at(const BevelPair& pair, const BevelPattern& grid, const EaseOffMap& map, std::size_t place,
-                     double margin, const bevel_gear::ConePoint& beside) {
+BeyondMargins bevel_beyond_margins(const BevelPair& pair, const BevelPattern& grid, const EaseOffMap& map,
+                                   std::size_t place, double margin, const bevel_gear::ConePoint& beside) {
   const int row = static_cast<int>(place) / grid.columns, column = static_cast<int>(place) % grid.columns;
-  unsigned edges = own_edges(grid.rows, grid.columns, row, column, margin);
-  if (std::isnan(map.gap_mm[place])) return static_cast<Edges>(edges | bit(nearest_end(pair, grid.half, beside)));
+  BeyondMargins out = beyond_own_margins(grid.rows, grid.columns, row, column, margin);
+  const auto lower = [&](Edge edge, double to) {
+    double& own = out[static_cast<std::size_t>(edge)];
+    own = std::min(own, to);
+  };
+  if (std::isnan(map.gap_mm[place])) {
+    lower(nearest_end(pair, grid.half, beside), 0);
+    return out;
+  }
   const auto& own = pair.pinion().halves()[static_cast<std::size_t>(grid.half)];
   const double tip = pair.pinion().parameters().addendum_mm, face = own.ell_to - own.ell_from;
   const bevel_gear::ConePoint on{map.pinion_along_mm[place], map.pinion_across_mm[place], 0};
-  if (tip - on.height < margin * 2 * tip) edges |= bit(Edge::pinion_tip);
-  if (on.height < lowest_of_pinion(pair, grid.half)) edges |= bit(Edge::pinion_root);
-  if (on.ell - own.ell_from < margin * face) edges |= bit(Edge::inner_end);
-  if (own.ell_to - on.ell < margin * face) edges |= bit(Edge::outer_end);
-  if (beside_the_end(map, grid.rows, grid.columns, row, column)) edges |= bit(nearest_end(pair, grid.half, on));
-  return static_cast<Edges>(edges);
+  lower(Edge::pinion_tip, (tip - on.height) / (2 * tip) - margin);
+  lower(Edge::pinion_root, (on.height - lowest_of_pinion(pair, grid.half)) / (2 * tip) - margin);
+  lower(Edge::inner_end, (on.ell - own.ell_from) / face - margin);
+  lower(Edge::outer_end, (own.ell_to - on.ell) / face - margin);
+  if (beside_the_end(map, grid.rows, grid.columns, row, column)) lower(nearest_end(pair, grid.half, on), 0);
+  return out;
 }
 
 PatternPlace bevel_pattern_place(const BevelPair& pair, const BevelPattern& rolled, const EaseOffMap& map,
@@ -118,8 +125,8 @@ PatternPlace bevel_pattern_place(const BevelPair& pair, const BevelPattern& roll
   for (std::size_t k = 0; k < rolled.places.size(); ++k) {
     grid.points.emplace_back(rolled.places[k].ell, rolled.places[k].height, 0);
     grid.gap_mm.push_back(std::isnan(rolled.gap_mm[k]) ? kUnmet : rolled.gap_mm[k]);
-    grid.edges.push_back(
-        bevel_edges_at(pair, rolled, map, k, margin, {rolled.pinion_ell_mm[k], rolled.pinion_height_mm[k], 0}));
+    grid.margins.push_back(
+        bevel_beyond_margins(pair, rolled, map, k, margin, {rolled.pinion_ell_mm[k], rolled.pinion_height_mm[k], 0}));
   }
   return pattern_place(grid, compound_mm);
 }

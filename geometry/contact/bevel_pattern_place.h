@@ -29,11 +29,10 @@ struct BevelEaseOff {
 /// Distances are square to the pinion's wall. Refused: no place with a common normal.
 [[nodiscard]] Result<BevelEaseOff> bevel_ease_off(const BevelPair& pair, int sigma, int rows, int columns);
 
-/// Which edges a place of the wheel's wall lies at: those of the wall, those of the pinion's.
-/// @param margin  share of the face, of the wall's height and of the pinion's active depth, 0 to 0.4
+/// How far beyond the margins a place of the wheel's wall lies: of the edges of the wall, of those of the pinion's.
 /// @param beside  of the pinion where it is nearest to a place without a common normal
-[[nodiscard]] Edges bevel_edges_at(const BevelPair& pair, const BevelPattern& grid, const EaseOffMap& map,
-                                   std::size_t place, double margin, const bevel_gear::ConePoint& beside);
+[[nodiscard]] BeyondMargins bevel_beyond_margins(const BevelPair& pair, const BevelPattern& grid, const EaseOffMap& map,
+                                                 std::size_t place, double margin, const bevel_gear::ConePoint& beside);
 
 /// Marks weigh as much as their places have of the wall's cone distances and heights.
 /// @param rolled  of the grid of the map, with gaps

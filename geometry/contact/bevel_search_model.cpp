@@ -84,16 +84,16 @@ Result<SearchModel> bevel_search_model(const bevel_gear::BevelGear& pinion, cons
   for (std::size_t h = 0; h < map->grids.size(); ++h) {
     const BevelPattern& grid = map->grids[h];
     const EaseOffMap& of_half = map->found.maps[h];
-    std::vector<Edges> edges;
+    std::vector<BeyondMargins> margins;
     std::vector<MillPlace> on_wheel;
     std::array<std::vector<MillPlace>, 3> on_pinion;
     for (std::size_t k = 0; k < grid.places.size(); ++k) {
-      edges.push_back(bevel_edges_at(*pair, grid, of_half, k, options.margin, {}));
+      margins.push_back(bevel_beyond_margins(*pair, grid, of_half, k, options.margin, {}));
       on_wheel.push_back(made_at(wheel, wheel.halves()[h].wall(sigma), grid.places[k].beta, grid.places[k].p));
       const auto mates = mates_at(pinion, pinion.halves()[h].wall(sigma), map->mates[h][k]);
       for (std::size_t when = 0; when < 3; ++when) on_pinion[when].push_back(mates[when]);
     }
-    SearchFlank flank(grid.rows, grid.columns, of_half, edges, pinion.R_m() * pinion.sin_delta());
+    SearchFlank flank(grid.rows, grid.columns, of_half, margins, pinion.R_m() * pinion.sin_delta());
     flank.reach = 5;
     const auto removal = [&](const modification::Modification& m, bool of_pinion, int when) {
       const bevel_gear::BevelGear& gear = of_pinion ? pinion : wheel;

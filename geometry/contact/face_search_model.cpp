@@ -13,18 +13,18 @@ struct FacePlace {
 SearchFlank flank_of(const face_gear::FaceGearRing& ring, const ContactMember& member, const EaseOffMap& map,
                      const std::vector<SearchedModification>& searched, double margin) {
   const ContactFlank& f = member.flank;
-  std::vector<Edges> edges;
+  std::vector<BeyondMargins> margins;
   std::vector<FacePlace> on_gear, on_pinion;
   for (int r = 0; r < f.rows; ++r)
     for (int c = 0; c < f.columns; ++c) {
       const auto k = f.index(r, c);
-      edges.push_back(edges_at(member, map, r, c, margin, 0));
+      margins.push_back(beyond_margins(member, map, r, c, margin, 0));
       const Vec3 plain = f.surface.flank(f.side, f.theta[k], f.B[k]).p;
       const double radius = std::hypot(plain.x(), plain.y());
       on_gear.push_back({face_gear::FlankField::depth(f.surface, plain, radius), radius});
       on_pinion.push_back({member.pinion.r_a - map.pinion_across_mm[k], map.pinion_along_mm[k]});
     }
-  SearchFlank flank(f.rows, f.columns, map, edges, 1);
+  SearchFlank flank(f.rows, f.columns, map, margins, 1);
   flank.add_removals(searched, f.side, 0, [&](const modification::Modification& m, bool of_pinion, int) {
     const auto rectangle =
         of_pinion ? rectangle_of(member.pinion, ring) : face_gear::rectangle_of(f.surface, ring.zone);

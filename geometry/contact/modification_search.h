@@ -50,7 +50,8 @@ struct SearchFlank {
   std::vector<double> gap, phi, bend;  ///< NaN: no common normal. Gaps and bends as motion: divided by `per_motion`
   std::vector<std::size_t> unmet;      ///< places without a common normal
   std::vector<double> per_motion;      ///< distance per unit of motion; empty: 1 everywhere
-  std::vector<Edges> edges;            ///< in the margin
+  /// The places within the margin of an edge, and where lines of the grid cross its bound.
+  std::vector<MarginBound> in_margins;
   /// What a mm of an amount takes from every place, as motion: with the turn at which the place is nearest, and how
   /// that changes as the mated place moves on over the gear's turn; slope and bend empty where it stays.
   struct Taken {
@@ -61,8 +62,8 @@ struct SearchFlank {
   int reach = 2;                 ///< rows either way of the nearest one that may touch
   std::vector<int> nearest_row;  ///< of turn k, column c: [k * columns + c]; -1: none. Filled in by the model
 
-  /// From a map. @param edges  of its places, in the map's order
-  SearchFlank(int rows_of_map, int columns_of_map, const EaseOffMap& map, const std::vector<Edges>& edges_of_map,
+  /// From a map. @param margins  of its places, in the map's order
+  SearchFlank(int rows_of_map, int columns_of_map, const EaseOffMap& map, const std::vector<BeyondMargins>& margins,
               double motion_lever);
   /// Removal along the normal by one modification [mm] at every place of the map, row by row, on gear or pinion; `when`
   /// -1, 0, 1: a step of the gear's turn before the place is nearest, then, and after.
@@ -111,9 +112,9 @@ class SearchModel {
   void add(Sums& to, std::size_t s, double amount_mm, int length, double times) const;
   /// Where a candidate was worst: asked first of the next one, which often is worst there as well.
   struct Worst {
-    int low = 0, high = 0;  ///< turns of the least and the greatest of the motion curve
-    std::size_t flank = 0;  ///< the place of the least gap
-    std::size_t place = kNowhere;
+    int low = 0, high = 0;         ///< turns of the least and the greatest of the motion curve
+    std::size_t flank = 0;         ///< of the least gap,
+    std::size_t place = kNowhere;  ///< and its number among `in_margins`
     static constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
   };
   /// An error is at least, a gap at most so much: does more of it matter?

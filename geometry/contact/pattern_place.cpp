@@ -26,14 +26,35 @@ const char* to_string(Edge edge) {
   return "";
 }
 
-Edges own_edges(int rows, int columns, int row, int column, double margin) {
-  const double u = double(row) / (rows - 1), v = double(column) / (columns - 1);
-  unsigned edges = 0;
-  if (column == 0 || v < margin) edges |= bit(Edge::inner_end);
-  if (column == columns - 1 || v > 1 - margin) edges |= bit(Edge::outer_end);
-  if (row == 0 || u < margin) edges |= bit(Edge::fillet_line);
-  if (row == rows - 1 || u > 1 - margin) edges |= bit(Edge::tip);
-  return static_cast<Edges>(edges);
+BeyondMargins beyond_own_margins(int rows, int columns, int row, int column, double margin) {
+  BeyondMargins out;
+  out.fill(1);
+  const auto set = [&](Edge edge, double from_edge) { out[static_cast<std::size_t>(edge)] = from_edge - margin; };
+  set(Edge::inner_end, double(column) / (columns - 1));
+  set(Edge::outer_end, double(columns - 1 - column) / (columns - 1));
+  set(Edge::fillet_line, double(row) / (rows - 1));
+  set(Edge::tip, double(rows - 1 - row) / (rows - 1));
+  return out;
+}
+
+std::vector<MarginBound> margin_bounds(int across, int along, const std::vector<BeyondMargins>& places) {
+  std::vector<MarginBound> out;
+  const auto between = [&](std::size_t a, std::size_t b) {
+    for (std::size_t e = 0; e < kEdges; ++e) {
+      const double here = places[a][e], there = places[b][e];
+      if ((here <= 0) == (there <= 0)) continue;
+      const bool a_within = here <= 0;
+      const double in = a_within ? here : there, out_by = a_within ? there : here;
+      out.push_back({a_within ? a : b, a_within ? b : a, -in / (out_by - in), Edge(e)});
+    }
+  };
+  for (int line = 0; line < along; ++line)
+    for (int n = 0; n < across; ++n) {
+      const auto k = static_cast<std::size_t>(line) * static_cast<std::size_t>(across) + static_cast<std::size_t>(n);
+      if (n + 1 < across) between(k, k + 1);
+      if (line + 1 < along) between(k, k + static_cast<std::size_t>(across));
+    }
+  return out;
 }
 
 bool beside_the_end(const EaseOffMap& map, int rows, int columns, int row, int column) {
@@ -45,18 +66,25 @@ bool beside_the_end(const EaseOffMap& map, int rows, int columns, int row, int c
   return false;
 }
 
-Edges edges_at(const ContactMember& member, const EaseOffMap& map, int row, int column, double margin,
-               double pinion_radius_mm) {
+BeyondMargins beyond_margins(const ContactMember& member, const EaseOffMap& map, int row, int column, double margin,
+                             double pinion_radius_mm) {
   const ContactFlank& f = member.flank;
   const Pinion<double>& pinion = member.pinion;
-  const double middle = (pinion.r_b + pinion.r_a) / 2;
-  unsigned edges = own_edges(f.rows, f.columns, row, column, margin);
-  const auto end_near = [&](double radius) { return bit(radius > middle ? Edge::pinion_tip : Edge::pinion_root); };
+  const double middle = (pinion.r_b + pinion.r_a) / 2, depth = 2 * (pinion.r_a - pinion.r_p);
+  BeyondMargins out = beyond_own_margins(f.rows, f.columns, row, column, margin);
+  const auto of = [&](Edge edge) -> double& { return out[static_cast<std::size_t>(edge)]; };
+  const auto end_near = [&](double radius) -> double& {
+    return of(radius > middle ? Edge::pinion_tip : Edge::pinion_root);
+  };
   const double radius = map.pinion_across_mm[f.index(row, column)];
-  if (std::isnan(radius)) return static_cast<Edges>(edges | end_near(pinion_radius_mm));
-  if (pinion.r_a - radius < margin * 2 * (pinion.r_a - pinion.r_p)) edges |= bit(Edge::pinion_tip);
-  if (beside_the_end(map, f.rows, f.columns, row, column)) edges |= end_near(radius);
-  return static_cast<Edges>(edges);
+  if (std::isnan(radius)) {
+    end_near(pinion_radius_mm) = 0;
+    return out;
+  }
+  of(Edge::pinion_tip) = (pinion.r_a - radius) / depth - margin;
+  of(Edge::pinion_root) = (radius - pinion.r_b) / depth - margin;
+  if (beside_the_end(map, f.rows, f.columns, row, column)) end_near(radius) = std::min(end_near(radius), 0.0);
+  return out;
 }
 
 PatternPlace pattern_place(const ContactMember& member, const EaseOffMap& map, const FlankPattern& pattern,
@@ -65,7 +93,7 @@ PatternPlace pattern_place(const ContactMember& member, const EaseOffMap& map, c
   RolledGrid rolled{f.rows, f.columns, f.points, pattern.gap_mm, {}};
   for (int r = 0; r < f.rows; ++r)
     for (int c = 0; c < f.columns; ++c)
-      rolled.edges.push_back(edges_at(member, map, r, c, margin, pattern.pinion_radius_mm[f.index(r, c)]));
+      rolled.margins.push_back(beyond_margins(member, map, r, c, margin, pattern.pinion_radius_mm[f.index(r, c)]));
   return pattern_place(rolled, compound_mm);
 }
 
@@ -83,11 +111,8 @@ PatternPlace pattern_place(const RolledGrid& f, double compound_mm) {
     for (int c = 0; c < f.columns; ++c) {
       const double gap = gap_at(r, c);
       if (gap > 1e100) continue;
-      for (int e = 0; e < kEdges; ++e)
-        if ((f.edges[index(r, c)] >> e & 1u) != 0) {
-          double& least = place.gap_mm[static_cast<std::size_t>(e)];
-          least = std::min(least, gap);
-        }
+      for (std::size_t e = 0; e < kEdges; ++e)
+        if (f.margins[index(r, c)][e] <= 0) place.gap_mm[e] = std::min(place.gap_mm[e], gap);
       if (gap > compound_mm) continue;
       const int low = std::max(0, r - 1), high = std::min(f.rows - 1, r + 1), in = std::max(0, c - 1),
                 out = std::min(f.columns - 1, c + 1);
@@ -103,6 +128,12 @@ PatternPlace pattern_place(const RolledGrid& f, double compound_mm) {
       place.inner = std::min(place.inner, crossing(c, gap, in, gap_at(r, in), compound_mm));
       place.outer = std::max(place.outer, crossing(c, gap, out, gap_at(r, out), compound_mm));
     }
+  for (const MarginBound& bound : margin_bounds(f.columns, f.rows, f.margins)) {
+    const double in = f.gap_mm[bound.within], beyond = f.gap_mm[bound.beyond];
+    if (in > 1e100 || beyond > 1e100) continue;
+    double& least = place.gap_mm[static_cast<std::size_t>(bound.edge)];
+    least = std::min(least, in + bound.share * (beyond - in));
+  }
   place.any = marked > 0;
   if (!place.any) {
     place.low = place.high = place.inner = place.outer = 0;

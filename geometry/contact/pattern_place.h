@@ -17,21 +17,28 @@ inline constexpr int kEdges = 6;
 
 inline constexpr double kUnmet = 1e300;  ///< gap of a place that the pinion never comes to
 
-/// A set of edges, a bit each.
-using Edges = std::uint8_t;
-[[nodiscard]] constexpr Edges bit(Edge edge) { return static_cast<Edges>(1u << static_cast<unsigned>(edge)); }
+/// How far beyond the margin of every edge a place lies, in shares of the face, of the flank's height, of the pinion's
+/// active depth; not above 0: within it, or the last place before the edge.
+using BeyondMargins = std::array<double, kEdges>;
 
-/// Edges of the flank itself that a place of its grid lies at: within the margin of them, and always the last places.
-/// @param margin  share of the face and of the flank's height, 0 to 0.4
-[[nodiscard]] Edges own_edges(int rows, int columns, int row, int column, double margin);
+/// Of the edges of the flank itself, at a place of its grid. @param margin  0 to 0.4
+[[nodiscard]] BeyondMargins beyond_own_margins(int rows, int columns, int row, int column, double margin);
 /// Is one of the four places beside this one without a common normal?
 [[nodiscard]] bool beside_the_end(const EaseOffMap& map, int rows, int columns, int row, int column);
 
-/// Which edges a place of a face gear's grid lies at: those of the flank, and those of the pinion.
-/// @param margin  share of the face, of the flank's height and of the pinion's active depth, 0 to 0.4
+/// Of all edges at a place of a face gear's grid: those of the flank, and those of the pinion.
 /// @param pinion_radius_mm  of the pinion where it is nearest to a place without a common normal
-[[nodiscard]] Edges edges_at(const ContactMember& member, const EaseOffMap& map, int row, int column, double margin,
-                             double pinion_radius_mm);
+[[nodiscard]] BeyondMargins beyond_margins(const ContactMember& member, const EaseOffMap& map, int row, int column,
+                                           double margin, double pinion_radius_mm);
+
+/// Where a line of the grid crosses the bound of a margin: between a place within it and its neighbour beyond.
+struct MarginBound {
+  std::size_t within = 0, beyond = 0;  ///< places
+  double share = 0;                    ///< of the way between them
+  Edge edge = Edge::inner_end;
+};
+/// All of a grid, row by row or column by column. @param across, along  places of a line, lines
+[[nodiscard]] std::vector<MarginBound> margin_bounds(int across, int along, const std::vector<BeyondMargins>& places);
 
 /// Shares of the flank: profile 0 at the fillet line, 1 at the tip; lead 0 at the inner end of the ring, 1 at the
 /// outer.
@@ -39,7 +46,8 @@ struct PatternPlace {
   bool any = false;                                ///< is there a mark at all?
   double profile = 0, lead = 0;                    ///< centre of the marked area
   double low = 0, high = 0, inner = 0, outer = 0;  ///< its extent: profile, lead; between the places of the grid
-  std::array<double, kEdges> gap_mm{};  ///< least gap at each edge, its margin and all; kUnmet: the pinion never comes
+  /// Least gap at each edge, its margin and all, up to its bound between the places; kUnmet: the pinion never comes.
+  std::array<double, kEdges> gap_mm{};
   [[nodiscard]] bool reaches(Edge edge, double compound_mm) const {
     return gap_mm[static_cast<std::size_t>(edge)] <= compound_mm;
   }
@@ -50,7 +58,7 @@ struct RolledGrid {
   int rows = 0, columns = 0;
   std::vector<Vec3> points;    ///< of tooth 0; their areas weigh the marks
   std::vector<double> gap_mm;  ///< least gap; beyond 1e100: the pinion never comes
-  std::vector<Edges> edges;    ///< that each place lies at
+  std::vector<BeyondMargins> margins;
 };
 [[nodiscard]] PatternPlace pattern_place(const RolledGrid& rolled, double compound_mm);
 /// Of a face gear.

@@ -30,13 +30,19 @@ std::vector<T> by_columns(const std::vector<T>& by_rows, int rows, int columns) 
 }  // namespace
 
 SearchFlank::SearchFlank(int rows_of_map, int columns_of_map, const EaseOffMap& map,
-                         const std::vector<Edges>& edges_of_map, double motion_lever)
+                         const std::vector<BeyondMargins>& margins, double motion_lever)
     : rows(rows_of_map),
       columns(columns_of_map),
       gap(by_columns(map.gap_mm, rows, columns)),
       phi(by_columns(map.phi_2, rows, columns)),
-      bend(by_columns(map.bend_mm, rows, columns)),
-      edges(by_columns(edges_of_map, rows, columns)) {
+      bend(by_columns(map.bend_mm, rows, columns)) {
+  const auto beyond = by_columns(margins, rows, columns);
+  for (std::size_t k = 0; k < beyond.size(); ++k)
+    if (const auto edge = std::find_if(beyond[k].begin(), beyond[k].end(), [](double by) { return by <= 0; });
+        edge != beyond[k].end())
+      in_margins.push_back({k, k, 0, Edge(edge - beyond[k].begin())});
+  const auto bounds = margin_bounds(rows, columns, beyond);
+  in_margins.insert(in_margins.end(), bounds.begin(), bounds.end());
   for (std::size_t k = 0; k < gap.size(); ++k)
     if (std::isnan(gap[k])) unmet.push_back(k);
   if (map.lever_mm.empty()) return;
@@ -177,11 +183,19 @@ class SearchModel::Curve {
   /// After all turns: where one pair takes over from another, too.
   [[nodiscard]] double whole_range() const { return with_handovers(pair_, bears_, high_) - low_; }
 
-  /// What a place of a flank keeps above the curve; kUnmet where nothing meets it.
+  /// What a place in the margins of a flank keeps above the curve; kUnmet where nothing meets it.
+  double gap_in_margins(std::size_t m, std::size_t n) {
+    const MarginBound& at = model_.flanks_[m].in_margins[n];
+    const double within = gap(m, at.within);
+    if (at.share == 0 || within == kUnmet) return within;
+    const double beyond = gap(m, at.beyond);
+    return beyond == kUnmet ? kUnmet : within + at.share * (beyond - within);
+  }
+  /// The same of any place.
   double gap(std::size_t m, std::size_t k) {
     const SearchFlank& flank = model_.flanks_[m];
     const double own = flanks_[m].gap[k];
-    if (flank.edges[k] == 0 || std::isnan(flank.gap[k])) return kUnmet;
+    if (std::isnan(flank.gap[k])) return kUnmet;
     double place = (flanks_[m].phi[k] - model_.start_) / model_.step_;
     while (place < 0) place += model_.steps_;
     const int whole = static_cast<int>(place);
@@ -263,7 +277,7 @@ SearchModel::Judged SearchModel::judge(const Sums& sums, Worst& worst, const Eno
   // What was worst last time.
   curve.at(worst.low);
   curve.at(worst.high);
-  if (worst.place != Worst::kNowhere) judged.margin_gap_mm = curve.gap(worst.flank, worst.place);
+  if (worst.place != Worst::kNowhere) judged.margin_gap_mm = curve.gap_in_margins(worst.flank, worst.place);
   judged.error_mm = curve.range();
   if (enough(judged.error_mm, judged.margin_gap_mm)) return judged;
   for (const int stride : {4, 1}) {
@@ -276,14 +290,12 @@ SearchModel::Judged SearchModel::judge(const Sums& sums, Worst& worst, const Eno
   worst.flank = before.flank, worst.place = before.place;
   judged.margin_gap_mm = kUnmet;
   for (std::size_t m = 0; m < flanks_.size(); ++m)
-    for (std::size_t k = 0; k < flanks_[m].gap.size(); ++k) {
-      const double gap = curve.gap(m, k);
+    for (std::size_t k = 0; k < flanks_[m].in_margins.size(); ++k) {
+      const double gap = curve.gap_in_margins(m, k);
       if (gap >= judged.margin_gap_mm) continue;
       judged.margin_gap_mm = gap;
       worst.flank = m, worst.place = k;
-      int edge = 0;
-      while ((flanks_[m].edges[k] >> edge & 1) == 0) ++edge;
-      judged.nearest = Edge(edge);
+      judged.nearest = flanks_[m].in_margins[k].edge;
     }
   return judged;
 }

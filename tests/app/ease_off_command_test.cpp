@@ -110,11 +110,23 @@ TEST(ContactOptimise, WritesAJobThatDoesWhatWasPromised) {
   ASSERT_TRUE(found.at("found").get<bool>()) << found.dump(1);
   EXPECT_FALSE(found.at("modifications").empty());
   const Json& rows = found.at("misalignments").at("rows");
+  // The proof rolls places inside the box, too, that no search saw.
+  int random = 0;
+  for (const Json& row : rows) {
+    if (row.at("name").get<std::string>().find("at random") == std::string::npos) continue;
+    ++random;
+    EXPECT_LT(std::abs(row.at("angle_deg").get<double>()), 0.03);
+  }
+  EXPECT_EQ(random, 4);
   double worst = 0;
   for (const Json& row : rows)
     for (const Json& flank : row.at("flanks")) {
       worst = std::max(worst, flank.at("transmission_error").at("range_um").get<double>());
       EXPECT_TRUE(flank.at("zones")[0].at("reaches").empty()) << row.dump(1);
+      for (const char* extent : {"profile_extent", "lead_extent"}) {  // off the edges by the margin of 5 %
+        EXPECT_GT(flank.at("zones")[0].at(extent)[0].get<double>(), 0.05 - 1e-9) << row.dump(1);
+        EXPECT_LT(flank.at("zones")[0].at(extent)[1].get<double>(), 0.95 + 1e-9) << row.dump(1);
+      }
       EXPECT_GT(flank.at("margin_gap_um").get<double>(), 6);
     }
   EXPECT_NEAR(found.at("transmission_error_um").at("worst").get<double>(), worst, 1e-12);

@@ -2,8 +2,11 @@
 
 #include <tbb/parallel_for.h>
 
+#include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <random>
 
 #include "app/base/units.h"
 #include "geometry/base/angle.h"
@@ -24,6 +27,7 @@ struct Quantity {
     return angle ? fmt::format("{} {:+g} deg", name, degrees(by)) : fmt::format("{} {:+g} mm", name, by);
   }
 };
+constexpr std::uint64_t kSeed = 1328;
 constexpr Quantity kQuantities[] = {{"offset", &Misalignment::offset_mm, false},
                                     {"angle", &Misalignment::angle_rad, true},
                                     {"pinion axial", &Misalignment::axial_mm, false},
@@ -74,6 +78,23 @@ std::vector<NamedMisalignment> corner_misalignments(const Misalignment& stands, 
     list = std::move(next);
   }
   if (list.size() < 4) list.clear();  // those stand among the single ones
+  return list;
+}
+
+std::vector<NamedMisalignment> random_misalignments(const Misalignment& stands, const Misalignment& box, int count) {
+  std::mt19937_64 random(kSeed);
+  std::vector<NamedMisalignment> list;
+  for (int k = 1; k <= count; ++k) {
+    NamedMisalignment at{fmt::format("at random {}:", k), stands};
+    for (const Quantity& q : kQuantities) {
+      if (box.*q.value == 0) continue;
+      // By hand: the library's distributions differ from one to the next.
+      const double share = std::round((2 * (double(random() >> 11) * 0x1p-53) - 1) * 1000) / 1000;
+      at.moved.*q.value += share * box.*q.value;
+      at.name += (at.name.back() == ':' ? " " : ", ") + q.text(share * box.*q.value);
+    }
+    list.push_back(std::move(at));
+  }
   return list;
 }
 

@@ -25,6 +25,10 @@ struct NamedMisalignment {
 [[nodiscard]] std::vector<NamedMisalignment> corner_misalignments(const contact::Misalignment& stands,
                                                                   const contact::Misalignment& box);
 
+/// Places inside the box, the same every time: what a search of its corners never saw.
+[[nodiscard]] std::vector<NamedMisalignment> random_misalignments(const contact::Misalignment& stands,
+                                                                  const contact::Misalignment& box, int count);
+
 /// Rolls one side of a pair where it then stands; sides 0 and 1 as the words of the pair name them.
 using RollSide = std::function<Result<contact::MisalignedContact>(std::size_t side, const contact::Misalignment&)>;
 

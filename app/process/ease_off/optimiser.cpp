@@ -24,8 +24,9 @@ constexpr double kLargest_mm = 0.1;
 constexpr double kUnits = 1e4;          // in a mm
 constexpr double kSteepest_rad = 0.08;  // of the shortest relief at its edge, and of a profile crowning
 constexpr double kNearlyEqual_mm = 1e-4, kNearlyEqualShare = 0.05;  // errors at the pitch radius: of two, the greater
-constexpr std::size_t kFirstRolled = 4;                             // misalignments that are rolled before all others
-constexpr double kModels = 0.05, kFirstRound = 0.6;                 // of the work, as it is told
+constexpr int kRandom = 4;                           // misalignments inside the box that only the proof sees
+constexpr std::size_t kFirstRolled = 4;              // misalignments that are rolled before all others
+constexpr double kModels = 0.05, kFirstRound = 0.6;  // of the work, as it is told
 
 /// What may be taken, no steeper than that.
 std::vector<SearchedModification> searched_for(const SearchedPair& pair) {
@@ -77,6 +78,9 @@ class Optimiser {
     options_.nearly_equal_mm = kNearlyEqual_mm * pair.motion_lever_mm() / pair.pitch_radius_mm();
     options_.nearly_equal_share = kNearlyEqualShare;
     out_.modify = std::move(modify);
+    // The proof alone looks inside the box.
+    const auto random = random_misalignments(settings_.moved, box, kRandom);
+    list_.insert(list_.end(), random.begin(), random.end());
     out_.table = {&pair.words(), box, options_.margin, options_.compound_mm, pair.pitch_radius_mm(), {}};
     out_.gear = pair.keys_of(false);
     out_.pinion = pair.keys_of(true);

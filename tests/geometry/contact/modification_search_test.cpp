@@ -166,7 +166,7 @@ TEST(ModificationSearch, NothingIsTakenThatNeedNotBe) {
       const double most = options.nearly_equal_to(found.least_error_mm[0]);
       EXPECT_LE(found.error_mm, most);
       EXPECT_EQ(found.units[5], 0);
-      EXPECT_LT(found.removal.most_mm, 0.06);
+      EXPECT_LT(found.removal.most_mm, 0.08) << "of the 0.1 mm that are planted little is left";
       std::printf("  side %+d: error %.3f um, least %.3f, removal %.1f um:", side, found.error_mm * 1e3,
                   found.least_error_mm[0] * 1e3, found.removal.most_mm * 1e3);
       for (const int u : found.units) std::printf(" %.1f", u / 10.0);

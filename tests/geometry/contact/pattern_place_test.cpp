@@ -59,5 +59,54 @@ TEST(PatternPlace, CrowningKeepsItInsideAndSlopesMoveIt) {
   EXPECT_LT((less.at_edges[0].lead - 0.5) * (more.at_edges[0].lead - 0.5), 0);
 }
 
+/// The gap in the margin of an edge is that at its very bound, wherever the rows and columns of the grid lie.
+TEST(PatternPlace, MarginsReachToTheirBoundsBetweenThePlaces) {
+  constexpr int kRows = 41, kColumns = 21;
+  for (const double margin : {0.0, 0.024, 0.05, 0.06, 0.11}) {
+    contact::RolledGrid grid{kRows, kColumns, {}, {}, {}};
+    // It falls from the edges inwards, as fast from all of them: least at the bounds.
+    for (int r = 0; r < kRows; ++r)
+      for (int c = 0; c < kColumns; ++c) {
+        const double u = double(r) / (kRows - 1), v = double(c) / (kColumns - 1);
+        grid.points.emplace_back(u, v, 0);
+        grid.gap_mm.push_back(1 - std::min({u, 1 - u, v, 1 - v}));
+        grid.margins.push_back(contact::beyond_own_margins(kRows, kColumns, r, c, margin));
+      }
+    const auto place = contact::pattern_place(grid, 0.2);
+    for (const Edge edge : {Edge::inner_end, Edge::outer_end, Edge::tip, Edge::fillet_line}) {
+      // Within the margin of one edge others are as far as the middle.
+      const double at_bound = 1 - margin;
+      EXPECT_NEAR(place.gap_mm[static_cast<std::size_t>(edge)], at_bound, 1e-12) << to_string(edge) << " " << margin;
+    }
+    for (const Edge edge : {Edge::pinion_tip, Edge::pinion_root})
+      EXPECT_EQ(place.gap_mm[static_cast<std::size_t>(edge)], contact::kUnmet);
+  }
+}
+
+/// Both ends of the pinion's involute have the same margin as its tip has.
+TEST(PatternPlace, TheEndsOfThePinionHaveMargins) {
+  const auto gear = modified_spur({modification_of(Kind::lead_crowning, 0.02)});
+  auto flank = contact::exact_flank(gear, 0, 1, 21, 13);
+  ASSERT_TRUE(flank);
+  const std::vector<contact::ContactMember> members = {contact::make_member(gear, *flank, 20, {}, {})};
+  const auto map = contact::ease_off(members);
+  ASSERT_TRUE(map);
+  const auto& pinion = members[0].pinion;
+  const double depth = 2 * (pinion.r_a - pinion.r_p);
+  for (int r = 0; r < 21; ++r)
+    for (int c = 0; c < 13; ++c) {
+      const double radius = map->maps[0].pinion_across_mm[members[0].flank.index(r, c)];
+      if (std::isnan(radius)) continue;
+      const auto beyond = contact::beyond_margins(members[0], map->maps[0], r, c, 0.07, 0);
+      EXPECT_EQ(radius - pinion.r_b <= 0.07 * depth || beyond[int(Edge::pinion_root)] == 0,
+                beyond[int(Edge::pinion_root)] <= 0);
+      EXPECT_EQ(pinion.r_a - radius <= 0.07 * depth || beyond[int(Edge::pinion_tip)] == 0,
+                beyond[int(Edge::pinion_tip)] <= 0);
+      if (beyond[int(Edge::pinion_root)] != 0) {
+        EXPECT_NEAR(beyond[int(Edge::pinion_root)], (radius - pinion.r_b) / depth - 0.07, 1e-12);
+      }
+    }
+}
+
 }  // namespace
 }  // namespace toothpath::test
