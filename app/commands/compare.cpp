@@ -175,7 +175,8 @@ std::vector<page::StudyPage::Figure> maps_of(const std::vector<ComparedFlank>& f
                          name == "shaped"
                              ? "Feed marks of the strokes: flats of the cutter's profile between two strokes."
                          : name == "milled" ? "Cusps between the passes of the ball."
-                                            : "Where the milled flank stands higher (red) or lower (blue)."});
+                                            : fmt::format("Where the milled flank stands higher ({}) or lower ({}).",
+                                                          svg::kAboveZero, svg::kBelowZero)});
     }
   }
   return figures;

@@ -9,6 +9,17 @@
 namespace toothpath::test {
 namespace {
 
+/// The badge of the page says what its patterns do.
+void expect_verdict(const std::string& page, const Json& report) {
+  bool off = true;
+  for (const Json& flank : report.at("flanks"))
+    for (const Json& zone : flank.at("zones"))
+      off = off && zone.at("pattern").at("words").get<std::string>().find("runs out at") == std::string::npos;
+  EXPECT_EQ(page.find("verdict good") != std::string::npos, off);
+  EXPECT_EQ(page.find("contact inside the flanks</div>") != std::string::npos, off);
+  EXPECT_EQ(page.find("pattern runs out at: ") != std::string::npos, !off);
+}
+
 /// The offset sample with a pinion of two teeth less: the printed path, no transmission error, a pattern that keeps off
 /// the outer end.
 TEST(ContactCommand, OffsetGear) {
@@ -40,6 +51,7 @@ TEST(ContactCommand, OffsetGear) {
   for (const char* words :
        {"Gear: flank +1, exact", "Pinion: flank +1, exact", "Gear: flank -1, exact", "Pinion: flank -1, exact"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
+  expect_verdict(page, report);
 }
 
 /// Options stand above the keys of [contact]; a misalignment moves the path; the pinion as shaper marks the whole flank

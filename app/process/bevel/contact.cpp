@@ -156,8 +156,9 @@ std::vector<page::StudyPage::Figure> figures_of(const PairAnalysis& a) {
       figures.push_back({"Contact pattern, " + where, svg::svg_contact_pattern(pattern),
                          fmt::format("Compound {:g} um; line: places that touch first.", a.compound_mm * 1000)});
       figures.push_back({"Mismatch at the exact ratio, " + where, svg::svg_flank_field(field),
-                         "Red: a gap; blue: the flanks would overlap and lift the other pairs off. White also where "
-                         "the pinion's flank has ended."});
+                         fmt::format("Above zero ({}): a gap; below ({}): the flanks would overlap and lift the other "
+                                     "pairs off. White also where the pinion's flank has ended.",
+                                     svg::kAboveZero, svg::kBelowZero)});
     }
   return figures;
 }

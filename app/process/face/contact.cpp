@@ -18,10 +18,8 @@ std::string contact_page(const ContactAnalysis& a) {
                               a.settings.compound_mm * 1000);
   const contact::Misalignment& moved = a.settings.moved;
   if (!moved.none()) page.subtitle += "; " + words_of(moved);
-  bool edge = false;
-  for (const auto& side : a.sides) edge |= side.kind.find("edge") != std::string::npos;
-  page.good = !edge;
-  page.verdict = edge ? "edge contact" : "contact inside the flanks";
+  ContactVerdict verdict = verdict_of(a);
+  page.good = verdict.inside, page.verdict = std::move(verdict.words);
   page.introduction = {
       "Both members turn as rigid bodies without load, as on a rolling tester. The compound marks every place where "
       "the flanks come closer than its thickness at any moment of the mesh; the orange line is the path of contact, "

@@ -77,6 +77,21 @@ std::optional<modification::Refusal> refused_pinion(const face_gear::FaceGear& g
   return std::nullopt;
 }
 
+/// Edges of gear and pinion that a pattern reaches.
+std::vector<std::string> edges_reached(const contact::FlankPattern& p, const contact::PatternPlace* place,
+                                       double compound_mm) {
+  const auto at_pinion = [&](contact::Edge edge) { return place != nullptr && place->reaches(edge, compound_mm); };
+  std::vector<std::string> edges;
+  for (const auto& [there, edge] : {std::pair(p.at_inner_end, contact::Edge::inner_end),
+                                    {p.at_outer_end, contact::Edge::outer_end},
+                                    {p.at_tip, contact::Edge::tip},
+                                    {p.at_fillet, contact::Edge::fillet_line},
+                                    {at_pinion(contact::Edge::pinion_tip), contact::Edge::pinion_tip},
+                                    {at_pinion(contact::Edge::pinion_root), contact::Edge::pinion_root}})
+    if (there) edges.emplace_back(to_string(edge));
+  return edges;
+}
+
 /// The pattern in words, as on a rolling tester: along the tooth or across it, how inclined, where it runs out.
 std::string words_of(const contact::FlankPattern& p, const contact::PatternPlace* place, double compound_mm) {
   if (!(p.marked_share > 0)) return "no mark";
@@ -87,16 +102,8 @@ std::string words_of(const contact::FlankPattern& p, const contact::PatternPlace
   else text = std::abs(inclination) < 50 ? "longitudinal" : "across the tooth";
   if (p.marked_share <= 0.95 && p.length_mm >= 1.3 * p.width_mm)
     text += fmt::format(", inclined {:.1f} deg", inclination);
-  std::string ends;
-  const auto at_pinion = [&](contact::Edge edge) { return place != nullptr && place->reaches(edge, compound_mm); };
-  for (const auto& [there, name] : {std::pair(p.at_inner_end, "inner end"),
-                                    {p.at_outer_end, "outer end"},
-                                    {p.at_tip, "tip"},
-                                    {p.at_fillet, "fillet line"},
-                                    {at_pinion(contact::Edge::pinion_tip), to_string(contact::Edge::pinion_tip)},
-                                    {at_pinion(contact::Edge::pinion_root), to_string(contact::Edge::pinion_root)}})
-    if (there) ends += (ends.empty() ? "" : ", ") + std::string(name);
-  return text + (ends.empty() ? "; keeps off all edges" : "; runs out at: " + ends);
+  const auto ends = edges_reached(p, place, compound_mm);
+  return text + (ends.empty() ? "; keeps off all edges" : fmt::format("; runs out at: {}", fmt::join(ends, ", ")));
 }
 
 }  // namespace
@@ -104,6 +111,31 @@ std::string words_of(const contact::FlankPattern& p, const contact::PatternPlace
 bool is_modified(const ContactAnalysis& analysis) {
   return std::any_of(analysis.sides.begin(), analysis.sides.end(),
                      [](const ContactOfSide& side) { return is_modified(side); });
+}
+
+ContactVerdict verdict_of(const ContactAnalysis& analysis) {
+  std::vector<std::string> edges;
+  bool beside = false;
+  for (const ContactOfSide& side : analysis.sides) {
+    beside |= side.kind.find("edge") != std::string::npos;
+    for (std::size_t m = 0; m < side.members.size(); ++m)
+      for (auto& edge : edges_reached(side.roll.patterns[m], m < side.places.size() ? &side.places[m] : nullptr,
+                                      analysis.settings.compound_mm))
+        if (std::find(edges.begin(), edges.end(), edge) == edges.end()) edges.push_back(std::move(edge));
+  }
+  double line_load = 0;
+  if (analysis.loaded)
+    for (const auto& side : analysis.loaded->sides)
+      line_load = std::max(line_load, under_load::range_of(side.cycle, [](const loaded::LoadedPosition& p) {
+                                        return p.end_line_load;
+                                      }).most);
+  ContactVerdict verdict;
+  verdict.inside = !beside && edges.empty() && line_load == 0;
+  if (beside) verdict.words = "edge contact";
+  else if (!edges.empty()) verdict.words = fmt::format("pattern runs out at: {}", fmt::join(edges, ", "));
+  else verdict.words = "contact inside the flanks";
+  if (line_load > 0) verdict.words += fmt::format("; under load edges carry {:.0f} N/mm at most", line_load);
+  return verdict;
 }
 
 std::string words_of(const contact::Misalignment& moved) {

@@ -53,6 +53,13 @@ struct ContactAnalysis {
 /// A flank of the pair is not plain.
 [[nodiscard]] bool is_modified(const ContactAnalysis& analysis);
 
+/// Does contact stay inside the flanks, off all edges, without load and under that of the job? In a few words.
+struct ContactVerdict {
+  bool inside = false;
+  std::string words;
+};
+[[nodiscard]] ContactVerdict verdict_of(const ContactAnalysis& analysis);
+
 struct ContactGrid {
   int rows = 41, columns = 49;  ///< of the exact flank
   int steps = 48;               ///< positions a pitch

@@ -179,6 +179,7 @@ std::string svg_flank_field(const FlankFieldDrawing& p) {
   if (!(largest > 0))
     for (const double v : p.value) largest = std::max(largest, std::abs(v));
   if (!(largest > 0)) largest = 1;
+  // From kBelowZero to kAboveZero.
   static const std::vector<std::string> fills = {"#b03a25", "#dc7650", "#efb08e", "#f7dccb", "#f3f3f3",
                                                  "#d3e0f2", "#9db9e2", "#5f86c8", "#2b4f9e"};
   const int classes = static_cast<int>(fills.size());

@@ -25,8 +25,10 @@ struct PatternDrawing {
 /// unless the flank is longer than 6 times its height. One <svg>; empty without places.
 [[nodiscard]] std::string svg_contact_pattern(const PatternDrawing& drawing);
 
-/// A signed quantity on the flank (deviation, difference of two) as colours, red below zero and blue above, -largest ..
-/// +largest. Cells with a NaN corner stay empty.
+/// The colours of a flank field, for the words beside it.
+inline constexpr const char *kBelowZero = "red", *kAboveZero = "blue";
+/// A signed quantity on the flank (deviation, difference of two) as these colours, -largest .. +largest. Cells with a
+/// NaN corner stay empty.
 struct FlankFieldDrawing {
   std::string title, x_label, y_label, unit;
   int rows = 0, columns = 0;

@@ -6,6 +6,7 @@
 #include <regex>
 
 #include "app/report/svg/canvas.h"
+#include "app/report/svg/contact_pattern.h"
 #include "app/report/svg/turned_text.h"
 
 namespace toothpath {
@@ -92,6 +93,22 @@ TEST(SvgPlot, NoNumberIsNan) {
     EXPECT_EQ(svg.find("\"nan"), std::string::npos);
     EXPECT_EQ(svg.find("\"-nan"), std::string::npos);
     EXPECT_EQ(svg.find("inf\""), std::string::npos);
+  }
+}
+
+/// The words for the colours of a flank field are those of its fills.
+TEST(SvgPlot, ColoursOfAFlankFieldAreThoseOfItsWords) {
+  for (const double value : {1.0, -1.0}) {
+    const svg::FlankFieldDrawing field{
+        "f", "x", "y", "um", 2, 2, {0, 1, 0, 1}, {0, 0, 1, 1}, std::vector<double>(4, value), 1};
+    const std::string svg = svg::svg_flank_field(field);
+    // Behind the key: one cell, the largest path.
+    const auto at = svg.rfind("fill=\"#");
+    ASSERT_NE(at, std::string::npos);
+    const int rgb = std::stoi(svg.substr(at + 7, 6), nullptr, 16), red = rgb >> 16, blue = rgb & 255;
+    const std::string word = value > 0 ? svg::kAboveZero : svg::kBelowZero;
+    EXPECT_EQ(word, red > blue ? "red" : "blue") << svg;
+    EXPECT_GT(std::abs(red - blue), 50);
   }
 }
 
