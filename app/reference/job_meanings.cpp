@@ -41,7 +41,9 @@ constexpr Meaning kJobMeanings[] = {
     {"gear.modification.transition",
      "Length over which the kink at the beginning of a linear relief is rounded; left out: a quarter of the length."},
     {"gear.modification.flank",
-     "Seen from outside towards the gear's axis, the tips up; right is flank +1, of bevel gears wall U."},
+     "Seen from outside towards the gear's axis, the tips up; right is flank +1, of bevel gears wall U. A "
+     "helix_angle_slope of both is a taper; another helix is two of them, right and left, with amounts of opposite "
+     "signs."},
     {"gear.modification.end", "End of the face that is relieved: inner is nearer to the gear's axis."},
     {"gear.modification.zone",
      "Only in this ring of teeth, or half of a bevel gear, counted from 0 at the inside; left out: in all."},
@@ -217,7 +219,10 @@ constexpr Meaning kJobMeanings[] = {
     {"contact.modification.law", "How a relief grows from its beginning."},
     {"contact.modification.transition",
      "Length over which the kink at the beginning of a linear relief is rounded; left out: a quarter of the length."},
-    {"contact.modification.flank", "Seen from outside towards the gear's axis, the tips up; right is flank +1."},
+    {"contact.modification.flank",
+     "Seen from outside towards the gear's axis, the tips up; right is flank +1. A helix_angle_slope of both is a "
+     "taper; "
+     "another helix is two of them, right and left, with amounts of opposite signs."},
     {"contact.modification.end", "End of the face that is relieved: inner is nearer to the gear's axis."},
     {"contact.modification.zone", "Only in this ring of teeth, counted from 0 at the inside; left out: in all."},
     {"contact.modification.file",

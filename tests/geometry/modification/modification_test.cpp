@@ -77,6 +77,27 @@ TEST(Modification, EveryKindIsWhatItsWordsSay) {
   EXPECT_NEAR(removed(modification_of(Kind::twist, -0.01), 0, 60), 0.01, 1e-15);
 }
 
+/// The thickness that a tooth loses along its face, and which way its middle leans.
+TEST(Modification, ASlopeOfBothFlanksIsATaperTwoOfOppositeSignsAHelix) {
+  const auto slope = [](double amount, Flanks flanks) {
+    auto m = modification_of(Kind::helix_angle_slope, amount);
+    m.flanks = flanks;
+    return m;
+  };
+  const auto taken = [](const std::vector<Modification>& list, int side, double along) {
+    return modification::Field(list, side, 0, kOn).removal(1.0, along);
+  };
+  const std::vector<Modification> both = {slope(0.01, Flanks::both)},
+                                  two = {slope(0.01, Flanks::right), slope(-0.01, Flanks::left)};
+  for (const double along : {60.0, 61.3, 65.0}) {
+    const double share = (along - 60) / 5;
+    EXPECT_NEAR(taken(both, 1, along) + taken(both, -1, along), 0.02 * share, 1e-15);
+    EXPECT_NEAR(taken(both, 1, along) - taken(both, -1, along), 0, 1e-15);
+    EXPECT_NEAR(taken(two, 1, along) + taken(two, -1, along), 0.01, 1e-15) << "as thick all along";
+    EXPECT_NEAR(taken(two, 1, along) - taken(two, -1, along), 0.02 * share - 0.01, 1e-15);
+  }
+}
+
 TEST(Modification, FlanksAndZonesAreChosen) {
   auto m = modification_of(Kind::tip_relief, 0.02, 1);
   m.flanks = Flanks::right;
