@@ -357,7 +357,11 @@ TEST(DhfgStudy, NineTrials) {
     EXPECT_LE(loaded.at("pairs")[1].get<int>(), 5);
   }
   const std::string page = file_text(out + "/dhfg.html");
-  for (const char* words : {"Under load", "What the effort changes", "Against the article", "cannot be judged"})
+  for (const char* words :
+       {"Under load", "What the effort changes", "Against the article", "cannot be judged", "532 N m on the gear",
+        "friction 0.08", "trial 4: three pairs, then two", "pairs rise with ratio", "decreases, then increases",
+        "stress falls with ratio", "stress of trials 7 to 9", "N in trial 8", "of 25 deg", "trial 4 is optimal",
+        "covers the whole flank"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
   EXPECT_EQ(teeth_ratio.size(), 9u);
   EXPECT_EQ(teeth_helix.size(), 9u);

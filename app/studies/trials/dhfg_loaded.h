@@ -1,4 +1,4 @@
-// The nine trials under load: what the elastic pair of each does over a pitch, and how that stands against the article.
+// The nine trials under load: what the elastic pair of each does over a pitch.
 #pragma once
 
 #include <string>
@@ -17,6 +17,10 @@ struct LoadedEffort {
   int across = 4, flank = 6, face = 8, positions = 24;
 };
 
+inline constexpr double kMicro = 1e6, kUm = 1e3;  ///< in a rad, in a mm
+/// Coefficient of friction of the article's finite elements.
+inline constexpr double kArticleFriction = 0.08;
+
 struct Range {
   double least = 1e300, most = -1e300, mean = 0;
 };
@@ -28,10 +32,13 @@ struct LoadedTrial {
   Range approach_mm, stiffness, line_mm, outer_share;
   Range remainder;  ///< |axial force|, part of that of one helix
   int least_pairs = 0, most_pairs = 0;
+  double mean_pairs = 0;
+  int stiffness_falls = 0;                                             ///< how often a pitch it falls and rises again
   double error_rad = 0, floating_error_rad = 0, floating_axial_n = 0;  ///< peak to peak; largest
   double pressure = 0, end_pressure = 0;                               ///< MPa
   double share_per_um = 0;                                             ///< change of the share with the pinion's place
-  double pinion_torque_pressure = 0;                                   ///< the same torque on the pinion
+  /// What friction of kArticleFriction would add along the pinion, N, and to the gear's torque, part of it: a bound.
+  double friction_axial_n = 0, friction_torque = 0;
 };
 /// @param torque_nmm  on the gear
 [[nodiscard]] LoadedTrial load_trial(const face_gear::FaceGear& gear, double torque_nmm, const LoadedEffort& effort);
@@ -58,8 +65,5 @@ struct EqualHalves {
 };
 [[nodiscard]] page::PageTable equal_halves_table(const EqualHalves& equal);
 [[nodiscard]] page::PageTable effort_table(const std::vector<EffortRow>& rows, int trial);
-/// What the article states, what is found here, and the verdict, by the numbers.
-[[nodiscard]] page::PageTable article_table(const std::vector<DhfgTrial>& trials, const EqualHalves& equal,
-                                            const std::vector<EffortRow>& rows);
 
 }  // namespace toothpath::trials

@@ -21,15 +21,16 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StudyFacts, name, quick, milled, module_mm, n
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Range, least, most, mean)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LoadedEffort, across, flank, face, positions)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LoadedTrial, refusal, normal_n, single_axial_n, approach_mm, stiffness, line_mm,
-                                   outer_share, remainder, least_pairs, most_pairs, error_rad, floating_error_rad,
-                                   floating_axial_n, pressure, end_pressure, share_per_um, pinion_torque_pressure)
+                                   outer_share, remainder, least_pairs, most_pairs, mean_pairs, stiffness_falls,
+                                   error_rad, floating_error_rad, floating_axial_n, pressure, end_pressure,
+                                   share_per_um, friction_axial_n, friction_torque)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EffortRow, name, effort, segment_mm, rim_mm, row_teeth, found)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(TrialLevels, number, teeth, ratio, helix, blank)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(MillingTime, cutting_minutes, rapid_minutes, cl_points, refusal)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(DhfgTrial, levels, pinion_teeth, teeth, helix_angle_rad, R1_mm, R2_mm, land_mm,
                                    L_p_mm, R1_name, inner_mm, groove_mm, outer_mm, feasible_mm, half_face_mm, refusal,
-                                   overlap_halves, overlap, least_pairs, most_pairs, error_range_rad, balanced, held,
-                                   loaded, milling)
+                                   overlap_halves, overlap, least_pairs, most_pairs, error_range_rad, marked_share,
+                                   balanced, held, loaded, milling)
 
 namespace {
 

@@ -13,7 +13,7 @@
 namespace toothpath::trials {
 
 inline constexpr const char* kDhfg = "dhfg";
-inline constexpr int kDhfgVersion = 1;          ///< of what a sample means: another one, other samples
+inline constexpr int kDhfgVersion = 2;          ///< of what a sample means: another one, other samples
 inline constexpr std::size_t kMiddleTrial = 3;  ///< trial 4, whose effort is varied, from 0
 
 /// What the tables need of a study besides its samples: the head of its shards.

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/report/page/study_page.h"
+#include "app/studies/trials/dhfg_article.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/json_text.h"
 
@@ -183,9 +184,10 @@ std::vector<std::string> introduction_of(const StudyFacts& s) {
       "The rigid transmission error is zero in every trial. The axial force of a floating pinion is zero at any helix "
       "angle; a "
       "remainder appears when the halves share the torque unequally: a remainder of 30 % means a share of 65 to 35.",
-      "Torque is taken on the face gear; the literature does not print face widths, groove, L0 or whose torque it "
-      "states: here the groove lies in the middle of the band, and the halves take all that the limits leave unless "
-      "the study file gives half_face. Wider halves mean more overlap."};
+      "The torque is that of the face gear, as in the article: its gear shaft is loaded, on the rig by a hydraulic "
+      "motor. "
+      "It prints no face widths, groove or L0: here the groove lies in the middle of the band, and the halves take all "
+      "that the limits leave unless the study file gives half_face. Wider halves mean more overlap."};
   if (!s.milled)
     text.emplace_back(
         "Milling times need tools and operations, which a study file states (STUDY.toml): this study has none.");
@@ -209,7 +211,10 @@ nlohmann::ordered_json loaded_json(const LoadedTrial& l) {
           {"floating_error_range_urad", l.floating_error_rad * 1e6},
           {"pressure_MPa", l.pressure},
           {"end_pressure_MPa", l.end_pressure},
-          {"pinion_torque_pressure_MPa", l.pinion_torque_pressure},
+          {"mean_pairs", l.mean_pairs},
+          {"stiffness_falls_a_pitch", l.stiffness_falls},
+          {"friction_axial_N", l.friction_axial_n},
+          {"friction_torque_part", l.friction_torque},
           {"outer_share_change_per_um", l.share_per_um}};
 }
 
@@ -240,6 +245,7 @@ nlohmann::ordered_json json_of(const StudyFacts& s, const std::vector<DhfgTrial>
          {"contact_ratio", {{"inner", r.overlap_halves[0]}, {"outer", r.overlap_halves[1]}, {"v_teeth", r.overlap}}},
          {"pairs", {r.least_pairs, r.most_pairs}},
          {"error_range_urad", r.error_range_rad * 1e6},
+         {"marked_share", r.marked_share},
          {"axial_N",
           {{"single_helix", r.balanced.single_axial_n},
            {"inner_half", r.balanced.inner.pinion_axial_n},
@@ -264,8 +270,7 @@ std::vector<page::PageTable> tables_of(const StudyFacts& s, const StudyFound& fo
   tables.push_back(range_table(s, trials));
   if (!found.equal.trials.empty()) tables.push_back(equal_halves_table(found.equal));
   if (!found.efforts.empty()) tables.push_back(effort_table(found.efforts, trials[kMiddleTrial].levels.number));
-  if (auto article = article_table(trials, found.equal, found.efforts); !article.rows.empty())
-    tables.push_back(std::move(article));
+  if (auto article = article_table(s, found); !article.rows.empty()) tables.push_back(std::move(article));
   return tables;
 }
 

@@ -78,6 +78,8 @@ void roll_trial(const face_gear::FaceGear& gear, DhfgTrial& trial) {
   trial.least_pairs = both->least_touching;
   trial.most_pairs = both->most_touching;
   trial.error_range_rad = both->error_range_rad;
+  trial.marked_share = 1;
+  for (const auto& pattern : both->patterns) trial.marked_share = std::min(trial.marked_share, pattern.marked_share);
 }
 
 MillingTime mill(const DhfgStudy& study, const face_gear::FaceGear& gear) {

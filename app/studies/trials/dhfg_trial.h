@@ -61,6 +61,7 @@ struct DhfgTrial {
   double overlap_halves[2] = {0, 0}, overlap = 0;  ///< contact ratio of inner and outer half; of the V-teeth
   int least_pairs = 0, most_pairs = 0;
   double error_range_rad = 0;
+  double marked_share = 0;  ///< of the flanks, by the compound of a rolling tester; of the less marked half
   // Forces: rigid statics.
   contact::DoubleMeshForce balanced, held;
   LoadedTrial loaded;
