@@ -158,7 +158,7 @@ void read_meridian(toml::TableReader& table, const ToolContext& context, tool::T
 /// What a profile must fulfil, with the keys of the table.
 void check_profile(toml::TableReader& table, const tool::ToolAssembly& tool) {
   const auto made = tool::Profile::make(tool::cutter_data(tool));
-  if (const auto* refusals = std::get_if<std::vector<tool::ProfileRefusal>>(&made))
+  if (const auto* refusals = std::get_if<std::vector<Refusal>>(&made))
     for (const auto& refusal : *refusals) table.refuse(refusal.key, "{}", refusal.diagnostic.message);
 }
 

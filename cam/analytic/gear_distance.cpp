@@ -59,7 +59,7 @@ struct GearDistance::Impl {
   double pitch = 0;
   double sag = 0;
   double groove_floor = 0;  ///< where there are two rings
-  std::optional<face_gear::FaceGearRefusal> refusal;
+  std::optional<Refusal> refusal;
   int half_turn = 0;  ///< teeth
   std::vector<std::pair<double, double>>
       turns;  ///< cosine and sine of the turn of every tooth back to space 0, from -half_turn on
@@ -82,7 +82,7 @@ struct GearDistance::Impl {
 };
 
 GearDistance::GearDistance(const face_gear::FaceGear& gear, double reach_mm) : impl_(std::make_unique<Impl>(gear)) {
-  std::vector<std::optional<Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal>>> made(gear.rings().size());
+  std::vector<std::optional<Expected<std::unique_ptr<GearRing>, Refusal>>> made(gear.rings().size());
   tbb::parallel_for(std::size_t(0), made.size(),
                     [&](std::size_t zone) { made[zone] = GearRing::make(gear, int(zone), reach_mm); });
   for (auto& ring : made) {
@@ -106,7 +106,7 @@ const std::vector<GearDistance::Cell>& GearDistance::cells(int zone) const {
 const std::vector<std::array<Vec3, 3>>& GearDistance::triangles(int zone) const {
   return impl_->rings[std::size_t(zone)]->triangles;
 }
-const std::optional<face_gear::FaceGearRefusal>& GearDistance::refusal() const { return impl_->refusal; }
+const std::optional<Refusal>& GearDistance::refusal() const { return impl_->refusal; }
 const SpatialIndex& GearDistance::cell_index(int zone) const { return *impl_->rings[std::size_t(zone)]->index; }
 const face_gear::SpaceSheet& GearDistance::space(int zone) const { return impl_->rings[std::size_t(zone)]->space; }
 const BodyPatches& GearDistance::patches(int zone) const { return *impl_->rings[std::size_t(zone)]->patches; }

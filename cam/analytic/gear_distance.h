@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "cam/analytic/spatial_index.h"
+#include "geometry/base/refusal.h"
 #include "geometry/face_gear/offset_sheet.h"
 
 namespace toothpath::analytic {
@@ -54,7 +55,7 @@ class GearDistance {
   [[nodiscard]] double surface_keeps(const Vec3& from, const Vec3& axis, double length, double within) const;
 
   /// Why there is no distance to this gear: key within [gear] and message; none for a gear that can be asked.
-  [[nodiscard]] const std::optional<face_gear::FaceGearRefusal>& refusal() const;
+  [[nodiscard]] const std::optional<Refusal>& refusal() const;
 
   static constexpr int kBands = 4;  ///< a fillet may be touched at both of its ends: start places from several bands
 

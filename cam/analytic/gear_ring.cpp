@@ -404,8 +404,7 @@ class Maker {
 };
 
 /// A flank whose fold lies below the tip surface somewhere on the ring, with the radius from which it reaches it.
-std::optional<face_gear::FaceGearRefusal> flank_below_tip(const face_gear::SpaceSheet& space, const std::string& key,
-                                                          int zone) {
+std::optional<Refusal> flank_below_tip(const face_gear::SpaceSheet& space, const std::string& key, int zone) {
   constexpr int kSections = 16, kHalvings = 30;
   const auto& ring = space.ring().zone;
   const double inner = ring.inner_radius_mm, step = (ring.outer_radius_mm - inner) / kSections;
@@ -421,7 +420,7 @@ std::optional<face_gear::FaceGearRefusal> flank_below_tip(const face_gear::Space
           k < kSections
               ? fmt::format("an inner_radius of at least {:.4f} mm would do", reaches)
               : std::string("no ring that ends there would do: fewer shaper teeth or more pressure angle are needed");
-      return face_gear::FaceGearRefusal{
+      return Refusal{
           key,
           fail("zone {}: at radius {:.4f} mm flank side {:+d} folds back (undercut) below the tip surface at height "
                "{:.4f} mm; {}",
@@ -432,8 +431,8 @@ std::optional<face_gear::FaceGearRefusal> flank_below_tip(const face_gear::Space
 
 }  // namespace
 
-Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal> GearRing::make(const face_gear::FaceGear& gear,
-                                                                               int zone, double reach_mm) {
+Expected<std::unique_ptr<GearRing>, Refusal> GearRing::make(const face_gear::FaceGear& gear, int zone,
+                                                            double reach_mm) {
   const auto& ring = gear.rings()[std::size_t(zone)];
   const double r_in = ring.zone.inner_radius_mm, r_out = ring.zone.outer_radius_mm;
   const double beyond = std::min(reach_mm, 0.25 * (r_out - r_in) + 1.0);
@@ -446,14 +445,14 @@ Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal> GearRing::make(c
   const auto& sheet = out->sheet;
   const std::string key = "zone[" + std::to_string(zone) + "]";
   if (sheet.empty())
-    return face_gear::FaceGearRefusal{
+    return Refusal{
         key,
         fail("zone {}: the flanks and fillets of the tooth space are found at no radius between {:.4f} and {:.4f} mm",
              zone, r_in - beyond, r_out + beyond)};
   if (sheet.r_from() > r_in || sheet.r_to() < r_out)
-    return face_gear::FaceGearRefusal{key, fail("zone {}: the flanks and fillets of the tooth space are found from "
-                                                "radius {:.4f} to {:.4f} mm only, the ring is {:.4f} to {:.4f} mm",
-                                                zone, sheet.r_from(), sheet.r_to(), r_in, r_out)};
+    return Refusal{key, fail("zone {}: the flanks and fillets of the tooth space are found from "
+                             "radius {:.4f} to {:.4f} mm only, the ring is {:.4f} to {:.4f} mm",
+                             zone, sheet.r_from(), sheet.r_to(), r_in, r_out)};
   if (auto refusal = flank_below_tip(out->space, key, zone)) return std::move(*refusal);
   Maker(gear, zone, out->space, *out, reach_mm).make();
   return out;

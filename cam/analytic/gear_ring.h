@@ -62,8 +62,7 @@ struct GearRing {
 
   /// Ring `zone` of the gear, for distances up to `reach_mm`; a refusal where its surfaces cannot be followed over its
   /// whole width.
-  static Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal> make(const face_gear::FaceGear& gear, int zone,
-                                                                              double reach_mm);
+  static Expected<std::unique_ptr<GearRing>, Refusal> make(const face_gear::FaceGear& gear, int zone, double reach_mm);
 
   [[nodiscard]] bool on_ring(const Vec3& p) const;
   /// Is the azimuth over the top land at radius r?

@@ -15,6 +15,7 @@
 #include "cam/proof/limits.h"
 #include "cam/proof/verification.h"
 #include "cam/tool/assembly.h"
+#include "geometry/base/refusal.h"
 #include "geometry/base/result.h"
 
 namespace toothpath::ball {
@@ -54,9 +55,7 @@ struct OperationPlan {
 };
 
 /// A refusal with the key of the job it belongs to ("operation[2].tool", ...).
-struct PlanRefusal {
-  std::string key;
-  Diagnostic diagnostic;
+struct PlanRefusal : Refusal {
   std::vector<ToolTrial> trials = {};  ///< tools with which the operation was planned; their words stand in the message
 };
 

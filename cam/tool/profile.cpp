@@ -139,7 +139,7 @@ class Maker {
     return Meridian(std::move(pieces));
   }
 
-  std::vector<ProfileRefusal> refusals;
+  std::vector<Refusal> refusals;
 
  private:
   template <typename... Args>
@@ -275,7 +275,7 @@ Meridian holder_of(const ToolAssembly& tool) {
   return Maker(data).holder();
 }
 
-std::variant<Profile, std::vector<ProfileRefusal>> Profile::make(const CutterData& data) {
+std::variant<Profile, std::vector<Refusal>> Profile::make(const CutterData& data) {
   Maker maker(data);
   maker.check();
   if (!maker.refusals.empty()) return std::move(maker.refusals);

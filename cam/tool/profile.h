@@ -15,6 +15,7 @@
 #include "cam/tool/assembly.h"
 #include "cam/tool/frustum_distance.h"
 #include "cam/tool/radius_law.h"
+#include "geometry/base/refusal.h"
 #include "geometry/base/result.h"
 #include "geometry/base/vec.h"
 
@@ -180,13 +181,6 @@ struct ProofBodies {
   std::vector<Frustum> frustums;                  ///< "flute", "shank", "holder", from below
 };
 
-/// A refused number: the key of [[tool]] that it belongs to, so that the reader can add file, line and column.
-struct ProfileRefusal {
-  std::string key;  ///< "diameter", "half_angle", "corner_radius", "meridian_radius", "flute_length", "shank_diameter",
-                    ///< "stick_out", "holder", "meridian"
-  Diagnostic diagnostic;
-};
-
 /// A checked tool: cutting part, shank and holder.
 class Profile {
  public:
@@ -194,7 +188,7 @@ class Profile {
   /// (0, 45) deg; a corner or ball that does not fit under the flutes; a shank of a tapered mill thinner than its
   /// flutes; a barrel whose flutes pass its widest place; a stick-out below the flutes; a measured meridian that begins
   /// above the ball's centre, is not ascending, or errs by more than r_0/10.
-  static std::variant<Profile, std::vector<ProfileRefusal>> make(const CutterData& data);
+  static std::variant<Profile, std::vector<Refusal>> make(const CutterData& data);
   /// Of data that `make` would accept; nothing is checked again.
   static Profile of_accepted(const CutterData& data) { return unchecked(data); }
   /// A body from pieces, for cutters whose form is made elsewhere. `shank` and `holder` may be empty. No law.

@@ -44,7 +44,7 @@ FingerCutterData finger_cutter_for(const BevelGearParameters& p) {
   return c;
 }
 
-Expected<FingerCutterDesign, std::vector<BevelRefusal>> design_finger_cutter(const BevelGearParameters& parameters) {
+Expected<FingerCutterDesign, std::vector<Refusal>> design_finger_cutter(const BevelGearParameters& parameters) {
   const FingerCutterData data = finger_cutter_for(parameters);
   auto made = BevelGear::make(parameters, data);
   if (auto* refusals = made.refused()) return std::move(*refusals);

@@ -63,7 +63,7 @@ struct FingerCutterDesign {
   BevelGear gear;  ///< made with it
 };
 /// Refused: a gear that no finger mill of these rules makes; "tool." keys speak of the designed mill.
-[[nodiscard]] Expected<FingerCutterDesign, std::vector<BevelRefusal>> design_finger_cutter(
+[[nodiscard]] Expected<FingerCutterDesign, std::vector<Refusal>> design_finger_cutter(
     const BevelGearParameters& parameters);
 
 struct JudgementOptions {

@@ -90,7 +90,7 @@ class BevelGearBuilder {
     gear_.cutter_ = c;
   }
 
-  Expected<BevelGear, std::vector<BevelRefusal>> build() {
+  Expected<BevelGear, std::vector<Refusal>> build() {
     check_bevel_ranges(gear_.parameters_, gear_.cutter_, refusals_);
     if (!refusals_.empty()) return std::move(refusals_);
     blank();
@@ -378,12 +378,12 @@ class BevelGearBuilder {
 
   BevelGear gear_;
   FingerProfile<double> cutter_;
-  std::vector<BevelRefusal> refusals_;
+  std::vector<Refusal> refusals_;
   double least_F_ = std::numeric_limits<double>::infinity();
 };
 
-Expected<BevelGear, std::vector<BevelRefusal>> BevelGear::make(const BevelGearParameters& parameters,
-                                                               const FingerCutterData& cutter) {
+Expected<BevelGear, std::vector<Refusal>> BevelGear::make(const BevelGearParameters& parameters,
+                                                          const FingerCutterData& cutter) {
   return BevelGearBuilder(parameters, cutter).build();
 }
 

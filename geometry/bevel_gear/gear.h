@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/base/refusal.h"
 #include "geometry/base/result.h"
 #include "geometry/bevel_gear/parameters.h"
 #include "geometry/bevel_gear/surface.h"
@@ -59,17 +60,11 @@ struct ModifiedForm {
   double top_land_mm = 0, plain_top_land_mm = 0;  ///< BevelLimits::top_land_mm, and that of the plain gear
 };
 
-/// A refused number: the key of the job it belongs to ("face_width", "tool.tip_radius") and what is wrong.
-struct BevelRefusal {
-  std::string key;
-  Diagnostic diagnostic;
-};
-
 class BevelGear {
  public:
   /// Checks every limit of section 4, 6 and 11 of the page. `cutter` is the mill that finishes the walls.
-  static Expected<BevelGear, std::vector<BevelRefusal>> make(const BevelGearParameters& parameters,
-                                                             const FingerCutterData& cutter);
+  static Expected<BevelGear, std::vector<Refusal>> make(const BevelGearParameters& parameters,
+                                                        const FingerCutterData& cutter);
 
   [[nodiscard]] const BevelGearParameters& parameters() const { return parameters_; }
   [[nodiscard]] const FingerCutterData& cutter_data() const { return cutter_; }

@@ -10,11 +10,11 @@ namespace {
 constexpr double kCuspLossLimit = 1e-3;
 
 template <typename... Args>
-void refuse(std::vector<BevelRefusal>& list, std::string key, fmt::format_string<Args...> text, Args&&... args) {
+void refuse(std::vector<Refusal>& list, std::string key, fmt::format_string<Args...> text, Args&&... args) {
   list.push_back({std::move(key), fail(text, std::forward<Args>(args)...)});
 }
 
-void range(std::vector<BevelRefusal>& list, const char* key, double value, double low, double high, const char* unit) {
+void range(std::vector<Refusal>& list, const char* key, double value, double low, double high, const char* unit) {
   if (value >= low && value <= high) return;
   const std::string name = std::string(key).substr(std::string(key).rfind('.') + 1);
   refuse(list, key, "{} = {:.6g} {} is outside {:.6g} to {:.6g}", name, value, unit, low, high);
@@ -28,7 +28,7 @@ double bevel_pitch_angle(const BevelGearParameters& p) {
   return std::atan2(std::sin(p.shaft_angle_rad), u + std::cos(p.shaft_angle_rad));
 }
 
-void check_bevel_ranges(const BevelGearParameters& p, const FingerCutterData& c, std::vector<BevelRefusal>& list) {
+void check_bevel_ranges(const BevelGearParameters& p, const FingerCutterData& c, std::vector<Refusal>& list) {
   range(list, "teeth", p.teeth, 3, 2000, "");
   if (p.mate_teeth != 0) {
     range(list, "mate_teeth", p.mate_teeth, 3, 2000, "");
@@ -90,7 +90,7 @@ double bevel_top_land(const BevelGear& g, double R) {
 namespace {
 
 /// False, with a refusal: the face is so wide that the widest cutter that fits the small end has no tip left.
-bool tip_is_left(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRefusal>& list) {
+bool tip_is_left(const BevelGear& g, const BevelLimits& lim, std::vector<Refusal>& list) {
   const auto& p = g.parameters();
   const auto& d = g.cutter_data();
   const auto tip_of = [&](double module) {
@@ -111,7 +111,7 @@ bool tip_is_left(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRe
   return false;
 }
 
-void check_module(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRefusal>& list) {
+void check_module(const BevelGear& g, const BevelLimits& lim, std::vector<Refusal>& list) {
   const auto& d = g.cutter_data();
   if (!(d.module_mm > lim.module_limit_mm)) return;
   const double m_i = lim.module_at_small_end_mm, over = 0.5 * kPi * (d.module_mm - m_i);
@@ -128,8 +128,8 @@ void check_module(const BevelGear& g, const BevelLimits& lim, std::vector<BevelR
 }
 
 /// Depth, tip and corner of the profile, each by itself.
-void check_form(const BevelGear& g, const FingerProfile<double>& c, const BevelLimits& lim,
-                std::vector<BevelRefusal>& list, std::vector<std::string>& warnings) {
+void check_form(const BevelGear& g, const FingerProfile<double>& c, const BevelLimits& lim, std::vector<Refusal>& list,
+                std::vector<std::string>& warnings) {
   const auto& d = g.cutter_data();
   if (c.phi < 0)
     refuse(list, "tool.rack_depth",
@@ -156,7 +156,7 @@ void check_form(const BevelGear& g, const FingerProfile<double>& c, const BevelL
                     d.rack_depth_mm, -c.x_C));
 }
 
-void check_top_land(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRefusal>& list) {
+void check_top_land(const BevelGear& g, const BevelLimits& lim, std::vector<Refusal>& list) {
   const auto& p = g.parameters();
   const double land = lim.top_land_mm;
   if (land >= 0) return;
@@ -175,7 +175,7 @@ void check_top_land(const BevelGear& g, const BevelLimits& lim, std::vector<Beve
 }  // namespace
 
 void check_bevel_cutter(const BevelGear& g, const FingerProfile<double>& c, BevelLimits& lim,
-                        std::vector<BevelRefusal>& list, std::vector<std::string>& warnings) {
+                        std::vector<Refusal>& list, std::vector<std::string>& warnings) {
   const double m_i = g.normal_module(g.R_i());
   lim.module_at_small_end_mm = m_i;
   lim.module_limit_mm = 0.99 * m_i;
@@ -198,7 +198,7 @@ void warn_of_thin_tips(const BevelLimits& lim, std::vector<std::string>& warning
                                    lim.top_land_mm, lim.module_at_small_end_mm));
 }
 
-void check_bevel_cusp(const BevelGear& g, std::vector<BevelRefusal>& list, std::vector<std::string>& warnings) {
+void check_bevel_cusp(const BevelGear& g, std::vector<Refusal>& list, std::vector<std::string>& warnings) {
   const double loss = g.limits().cusp_loss_mm;
   if (loss <= 0) return;
   const double r_0 = g.cutter().r_0;

@@ -9,15 +9,15 @@ namespace toothpath::bevel_gear {
 [[nodiscard]] double bevel_pitch_angle(const BevelGearParameters& p);
 
 /// Ranges that each number must keep on its own.
-void check_bevel_ranges(const BevelGearParameters& p, const FingerCutterData& c, std::vector<BevelRefusal>& refusals);
+void check_bevel_ranges(const BevelGearParameters& p, const FingerCutterData& c, std::vector<Refusal>& refusals);
 
 /// Design checks of the cutter against the gear (width, point C, tip, arc, retraction, top land, face width). Fills the
 /// numbers that belong to them. The gear's blank must be known, its halves need not.
 void check_bevel_cutter(const BevelGear& gear, const FingerProfile<double>& cutter, BevelLimits& limits,
-                        std::vector<BevelRefusal>& refusals, std::vector<std::string>& warnings);
+                        std::vector<Refusal>& refusals, std::vector<std::string>& warnings);
 
 /// What the early end before the cusp of an equidistant costs on the flank.
-void check_bevel_cusp(const BevelGear& gear, std::vector<BevelRefusal>& refusals, std::vector<std::string>& warnings);
+void check_bevel_cusp(const BevelGear& gear, std::vector<Refusal>& refusals, std::vector<std::string>& warnings);
 
 /// Remark where the tips of the teeth are thin.
 void warn_of_thin_tips(const BevelLimits& limits, std::vector<std::string>& warnings);

@@ -17,8 +17,8 @@ constexpr double kMostMixed = 1e-6;  // mm: of a grid that is no sum, left out a
 constexpr int kLooks = 512;          // places along profile and path
 
 template <typename... Args>
-std::optional<BevelRefusal> refuse(std::string key, fmt::format_string<Args...> text, Args&&... args) {
-  return BevelRefusal{std::move(key), fail(text, std::forward<Args>(args)...)};
+std::optional<Refusal> refuse(std::string key, fmt::format_string<Args...> text, Args&&... args) {
+  return Refusal{std::move(key), fail(text, std::forward<Args>(args)...)};
 }
 
 /// Side of a flank as modifications count it: seen from the large end with the tips up, U is the right one.
@@ -64,10 +64,9 @@ std::shared_ptr<const LeadLaw> lead_law(const BevelGearParameters& p, int sigma,
   return std::make_shared<const LeadLaw>(std::move(law));
 }
 
-std::optional<BevelRefusal> refused_modification(const BevelGearParameters& p, int zone, int zones,
-                                                 const modification::Rectangle& on) {
-  if (auto r = modification::refused(p.modifications, zone, on))
-    return BevelRefusal{std::move(r->key), std::move(r->diagnostic)};
+std::optional<Refusal> refused_modification(const BevelGearParameters& p, int zone, int zones,
+                                            const modification::Rectangle& on) {
+  if (auto refusal = modification::refused(p.modifications, zone, on)) return refusal;
   for (std::size_t k = 0; k < p.modifications.size(); ++k) {
     const Modification& m = p.modifications[k];
     if (m.amount_mm == 0 || (m.zone && *m.zone != zone)) continue;
@@ -100,7 +99,7 @@ std::optional<BevelRefusal> refused_modification(const BevelGearParameters& p, i
   return std::nullopt;
 }
 
-std::optional<BevelRefusal> refused_profile(const FingerProfile<double>& c) {
+std::optional<Refusal> refused_profile(const FingerProfile<double>& c) {
   if (!c.law) return std::nullopt;
   double turned = 0, turned_at = 0, leans = kPi, leans_at = 0;
   for (int k = 0; k <= kLooks; ++k) {
@@ -139,7 +138,7 @@ std::optional<BevelRefusal> refused_profile(const FingerProfile<double>& c) {
   return std::nullopt;
 }
 
-std::optional<BevelRefusal> refused_path(const BevelTrace<double>& t, double R_from, double R_to) {
+std::optional<Refusal> refused_path(const BevelTrace<double>& t, double R_from, double R_to) {
   if (!t.lead[0] && !t.lead[1]) return std::nullopt;
   for (int k = 0; k <= kLooks; ++k) {
     const double R = R_from + (R_to - R_from) * k / kLooks, beta = t.beta(R);

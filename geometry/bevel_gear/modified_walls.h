@@ -27,15 +27,15 @@ namespace toothpath::bevel_gear {
 [[nodiscard]] modification::Rectangle rectangle_of(const BevelGear& gear, int zone);
 
 /// Modifications that do not fit a half, or that one mill on its path does not make.
-[[nodiscard]] std::optional<BevelRefusal> refused_modification(const BevelGearParameters& parameters, int zone,
-                                                               int zones, const modification::Rectangle& on);
+[[nodiscard]] std::optional<Refusal> refused_modification(const BevelGearParameters& parameters, int zone, int zones,
+                                                          const modification::Rectangle& on);
 
 /// What the profile of a modified mill makes impossible: it folds, turns too far, leans inwards.
-[[nodiscard]] std::optional<BevelRefusal> refused_profile(const FingerProfile<double>& cutter);
+[[nodiscard]] std::optional<Refusal> refused_profile(const FingerProfile<double>& cutter);
 
 /// What a modified path makes impossible: it turns too far, or the mill no longer fits between both walls.
 /// @param R_from, R_to  face of the half
-[[nodiscard]] std::optional<BevelRefusal> refused_path(const BevelTrace<double>& trace, double R_from, double R_to);
+[[nodiscard]] std::optional<Refusal> refused_path(const BevelTrace<double>& trace, double R_from, double R_to);
 
 /// Greatest removal and turn of the normal by profile and paths.
 [[nodiscard]] ModifiedForm modified_form(const BevelGear& gear);

@@ -111,13 +111,13 @@ class Look {
 
 ModifiedForm modified_form(const FaceGearParameters& gear, const FaceGearRing& ring) { return Look(gear, ring).form(); }
 
-Expected<std::shared_ptr<const RingModification>, FaceGearRefusal> ring_modification(
-    const FaceGearParameters& gear, const FaceGearSurface<double>& surface, int zone) {
+Expected<std::shared_ptr<const RingModification>, Refusal> ring_modification(const FaceGearParameters& gear,
+                                                                             const FaceGearSurface<double>& surface,
+                                                                             int zone) {
   using Made = std::shared_ptr<const RingModification>;
   if (gear.modifications.empty()) return Made{};
   const auto on = rectangle_of(surface, gear.zones[std::size_t(zone)]);
-  if (auto r = modification::refused(gear.modifications, zone, on))
-    return FaceGearRefusal{std::move(r->key), std::move(r->diagnostic)};
+  if (auto refusal = modification::refused(gear.modifications, zone, on)) return std::move(*refusal);
   const auto of_side = [&](int side) { return modification::Field(gear.modifications, side, zone, on); };
   auto made = std::make_shared<RingModification>(RingModification{of_side(1), of_side(-1)});
   if (made->plus.empty() && made->minus.empty()) return Made{};

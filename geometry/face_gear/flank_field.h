@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "geometry/base/refusal.h"
 #include "geometry/face_gear/flank_correction.h"
 #include "geometry/face_gear/surface.h"
 #include "geometry/modification/modification.h"
@@ -20,7 +21,6 @@ struct RingModification {
 };
 
 struct FaceGearRing;
-struct FaceGearRefusal;
 
 /// What modifications come to on one ring, looked at on a grid of places.
 struct ModifiedForm {
@@ -42,7 +42,7 @@ struct ModifiedForm {
 [[nodiscard]] ModifiedForm modified_form(const FaceGearParameters& gear, const FaceGearRing& ring);
 
 /// The modifications of a gear on one of its zones; null where nothing is modified. Refused: as modification::refused.
-[[nodiscard]] Expected<std::shared_ptr<const RingModification>, FaceGearRefusal> ring_modification(
+[[nodiscard]] Expected<std::shared_ptr<const RingModification>, Refusal> ring_modification(
     const FaceGearParameters& gear, const FaceGearSurface<double>& surface, int zone);
 
 /// Depths and radii of a ring over which modifications are counted: from the tip surface, square to it, to where the

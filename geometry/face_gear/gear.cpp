@@ -46,7 +46,7 @@ class Inspection {
   void groove(const std::vector<FaceGearRing>& rings, std::vector<std::string>& warnings);
   void modify(std::size_t zone, const FaceGearParameters& gear, FaceGearRing& r, std::vector<std::string>& warnings);
 
-  std::vector<FaceGearRefusal> refusals;
+  std::vector<Refusal> refusals;
 
  private:
   const FaceGearParameters& gear_;
@@ -307,7 +307,7 @@ void warn_sharp_fillet(const FaceGearParameters& gear, const std::vector<FaceGea
 
 }  // namespace
 
-Expected<FaceGear, std::vector<FaceGearRefusal>> FaceGear::make(const FaceGearParameters& parameters) {
+Expected<FaceGear, std::vector<Refusal>> FaceGear::make(const FaceGearParameters& parameters) {
   Inspection inspection(parameters);
   inspection.numbers();
   inspection.zone_numbers();

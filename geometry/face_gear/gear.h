@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/base/refusal.h"
+#include "geometry/base/result.h"
 #include "geometry/face_gear/limits.h"
 #include "geometry/face_gear/surface.h"
 
@@ -35,17 +37,10 @@ struct FaceGearRing {
   }
 };
 
-/// A refused parameter: which key of the job it belongs to, so that the reader can add file, line and column.
-struct FaceGearRefusal {
-  std::string
-      key;  ///< within [gear] as in the job file: "module", "zone[0].inner_radius"; of [stock]: "stock.groove_depth"
-  Diagnostic diagnostic;
-};
-
 class FaceGear {
  public:
   /// Checks every limit of the gear. On failure returns all refusals.
-  static Expected<FaceGear, std::vector<FaceGearRefusal>> make(const FaceGearParameters& parameters);
+  static Expected<FaceGear, std::vector<Refusal>> make(const FaceGearParameters& parameters);
 
   [[nodiscard]] const FaceGearParameters& parameters() const { return parameters_; }
   [[nodiscard]] const std::vector<FaceGearRing>& rings() const { return rings_; }

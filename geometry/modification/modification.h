@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/base/refusal.h"
 #include "geometry/base/result.h"
 #include "geometry/modification/smooth_curve.h"
 
@@ -68,12 +69,6 @@ struct Modification {
 struct Rectangle {
   double depth_mm = 0, from_mm = 0, to_mm = 0;
   [[nodiscard]] double face() const { return to_mm - from_mm; }
-};
-
-/// Which modification is refused, and its key: "modification[0].length".
-struct Refusal {
-  std::string key;
-  Diagnostic diagnostic;
 };
 
 /// What does not fit the rectangle of a zone; nothing: all that meet it fit. Amounts beyond a tenth of the depth,

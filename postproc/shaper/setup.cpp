@@ -18,7 +18,7 @@ constexpr double kMaxDoubleStrokes = 500000;
 
 int ceil_quotient(double a, double b) { return static_cast<int>(std::ceil(a / b * (1 - kQuotientSlack))); }
 
-using Refusals = std::vector<ShaperRefusal>;
+using Refusals = std::vector<Refusal>;
 template <typename... Args>
 void refuse(Refusals& list, std::string key, fmt::format_string<Args...> text, Args&&... args) {
   list.push_back({std::move(key), fail(text, std::forward<Args>(args)...)});
@@ -270,8 +270,8 @@ TimingChoice choose_timing(const ShaperSetup& s) {
   return choice;
 }
 
-Expected<ShaperSetup, std::vector<ShaperRefusal>> plan_shaper_setup(const ShaperWork& work,
-                                                                    const machines::ShaperMachine& machine) {
+Expected<ShaperSetup, std::vector<Refusal>> plan_shaper_setup(const ShaperWork& work,
+                                                              const machines::ShaperMachine& machine) {
   Refusals refusals;
   check_kind(work, refusals);
   if (!refusals.empty()) return refusals;

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/base/refusal.h"
 #include "geometry/face_gear/surface.h"
 #include "machines/shaper_machine.h"
 #include "postproc/shaper/change_gears.h"
@@ -77,18 +78,12 @@ struct ShaperSetup {
   [[nodiscard]] double x_at_stroke(int j) const;
 };
 
-/// A refused value: which key of the job it belongs to, so that the caller can add file, line and column.
-struct ShaperRefusal {
-  std::string key;  ///< "shaping.circular_feed", "gear.zone[0].helix_angle", "machine.file", ...
-  Diagnostic diagnostic;
-};
-
 /// Computes the set-up. The gear must have passed `FaceGear::make`. Refused: more than one zone, a helix (needs a
 /// guide), a shaft angle other than 90 deg, no stroke step slow enough, a stroke longer than the machine's, travels, no
 /// exact index gears (the nearest is named) or a ratio that the electronic gearbox cannot hold, a pointed cutter tip.
 /// All refusals that can be found are returned.
-Expected<ShaperSetup, std::vector<ShaperRefusal>> plan_shaper_setup(const ShaperWork& work,
-                                                                    const machines::ShaperMachine& machine);
+Expected<ShaperSetup, std::vector<Refusal>> plan_shaper_setup(const ShaperWork& work,
+                                                              const machines::ShaperMachine& machine);
 
 /// Rotations of A (cutter) and C (work) after stroke j, as words in 1e-5 deg: from whole numbers, each rounded on its
 /// own (halves away from zero). The work: sense 360 j / strokes_turn; the cutter: 360 j N_2 / (N_s strokes_turn).

@@ -62,13 +62,12 @@ Result<ContactOfSide> side_of(const face_gear::FaceGear& gear, std::vector<conta
 }
 
 /// Modifications of the pinion that do not fit it.
-std::optional<modification::Refusal> refused_pinion(const face_gear::FaceGear& gear,
-                                                    const job::ContactSettings& settings) {
+std::optional<Refusal> refused_pinion(const face_gear::FaceGear& gear, const job::ContactSettings& settings) {
   const auto zones = static_cast<int>(gear.rings().size());
   for (std::size_t k = 0; k < settings.modifications.size(); ++k)
     if (const auto zone = settings.modifications[k].zone; zone && *zone >= zones)
-      return modification::Refusal{fmt::format("modification[{}].zone", k),
-                                   fail("zone = {} is not below {}, the number of zones", *zone, zones)};
+      return Refusal{fmt::format("modification[{}].zone", k),
+                     fail("zone = {} is not below {}, the number of zones", *zone, zones)};
   for (int zone = 0; zone < zones; ++zone) {
     const auto& ring = gear.rings()[static_cast<std::size_t>(zone)];
     const auto on = contact::rectangle_of(contact::make_pinion(ring.surface, settings.pinion_teeth), ring);

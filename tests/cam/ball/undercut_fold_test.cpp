@@ -104,8 +104,7 @@ TEST(UndercutFold, SpacesAreFoundWhereASearchFindsARegularFlank) {
   int accepted = 0, refused = 0, beyond = 0;
   for (int k = 0; k < 160; ++k) {
     const auto parameters = gear_beyond_the_fold(random);
-    auto made = parameters.zones.empty() ? Expected<face_gear::FaceGear, std::vector<face_gear::FaceGearRefusal>>(
-                                               std::vector<face_gear::FaceGearRefusal>{})
+    auto made = parameters.zones.empty() ? Expected<face_gear::FaceGear, std::vector<Refusal>>(std::vector<Refusal>{})
                                          : face_gear::FaceGear::make(parameters);
     if (made.refused()) {
       ++refused;

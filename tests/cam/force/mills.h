@@ -16,7 +16,7 @@ inline tool::Meridian line(const std::vector<Vec2>& corners) {
 
 inline tool::Profile made(const tool::CutterData& data) {
   auto p = tool::Profile::make(data);
-  if (auto* refused = std::get_if<std::vector<tool::ProfileRefusal>>(&p))
+  if (auto* refused = std::get_if<std::vector<Refusal>>(&p))
     throw std::runtime_error(refused->front().diagnostic.message);
   return std::get<tool::Profile>(std::move(p));
 }

@@ -83,7 +83,7 @@ tool::CutterData shaped(tool::CutterShape shape, double half_angle_deg = 0, doub
 }
 tool::Profile made_of(const tool::CutterData& d) {
   auto p = tool::Profile::make(d);
-  if (auto* refused = std::get_if<std::vector<tool::ProfileRefusal>>(&p))
+  if (auto* refused = std::get_if<std::vector<Refusal>>(&p))
     throw std::runtime_error(refused->front().diagnostic.message);
   return std::get<tool::Profile>(std::move(p));
 }
@@ -408,7 +408,7 @@ TEST(Profile, MeasuredMeridian) {
 TEST(Profile, RefusesWhatMakesNoBody) {
   const auto refused = [](tool::CutterData d, const std::string& key, const std::string& text) {
     const auto p = tool::Profile::make(d);
-    const auto* list = std::get_if<std::vector<tool::ProfileRefusal>>(&p);
+    const auto* list = std::get_if<std::vector<Refusal>>(&p);
     ASSERT_TRUE(list) << key;
     EXPECT_EQ(list->front().key, key);
     EXPECT_NE(list->front().diagnostic.message.find(text), std::string::npos) << list->front().diagnostic.message;
@@ -461,7 +461,7 @@ TEST(Profile, RefusesWhatMakesNoBody) {
   tool::CutterData all = tapered(0.25, 60);
   all.flute_length_mm = -1;
   all.shank_diameter_mm = 0;
-  EXPECT_EQ(std::get<std::vector<tool::ProfileRefusal>>(tool::Profile::make(all)).size(), 3u);
+  EXPECT_EQ(std::get<std::vector<Refusal>>(tool::Profile::make(all)).size(), 3u);
 }
 
 // Between the stated holder and the spindle nose its last diameter goes on.

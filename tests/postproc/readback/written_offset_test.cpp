@@ -76,55 +76,61 @@ TEST(WrittenOffset, ParametersHoldWhatWasWritten) {
   EXPECT_NEAR(last(executed("G0 X[#5221+#5230]\n")).joints[0], 6, 1e-12);
 }
 
-struct Refusal {
+struct RefusedProgram {
   const char *what, *body, *message;
   const char* index_offset = "G59.3";
 };
-void PrintTo(const Refusal& r, std::ostream* out) { *out << r.what; }
-class WrittenOffsetRefusals : public testing::TestWithParam<Refusal> {};
+void PrintTo(const RefusedProgram& r, std::ostream* out) { *out << r.what; }
+class WrittenOffsetRefusals : public testing::TestWithParam<RefusedProgram> {};
 INSTANTIATE_TEST_SUITE_P(
     Lines, WrittenOffsetRefusals,
     testing::Values(
-        Refusal{"an offset of the shop", "G10 L2 P1 X0 Y0 Z0 A0 C0 R6\n",
-                "p:13:1: error: G10 L2 P1 writes a work offset of the shop: post.index_offset is G59.3"},
-        Refusal{"the one in force", "G10 L2 P0 R6\n", "p:13:1: error: G10 L2 P0 writes a work offset of the shop"},
-        Refusal{"none is left", "G10 L2 P9 X0 Y0 Z0 A0 C0 R6\n",
-                "p:13:1: error: G10 L2 P9 writes a work offset of the shop: post.index_offset of the machine file "
-                "names none",
-                ""},
-        Refusal{"L20", "G10 L20 P9 X0 Y0 Z0 A0 C0\n", "p:13:1: error: G10 is read with L2 alone"},
-        Refusal{"L1", "G10 L1 P1 Z20\n", "p:13:1: error: G10 is read with L2 alone"},
-        Refusal{"no L", "G10 P9 R5\n", "p:13:1: error: G10 is read with L2 alone"},
-        Refusal{"no turn", "G10 L2 P9 X0 Y0 Z0 A0 C0\n", "G10 L2 stands in a block of its own, with P, R and axes"},
-        Refusal{"a feed beside it", "G10 L2 P9 X0 Y0 Z0 A0 C0 R5 F100\n",
-                "p:13:1: error: G10 L2 stands in a block of its own, with P, R and axes"},
-        Refusal{"some axes", "G10 L2 P9 X0 Y0 R5\n", "p:13:1: error: G10 L2 names all axes of the machine or none"},
-        Refusal{"a zero of C", "G10 L2 P9 X#5221 Y#5222 Z#5223 A#5224 C[#5226+6] R5\n",
-                "p:13:1: error: G10 L2 moves the zero of C by 6 deg, limit 0: G52 does that"},
-        Refusal{"turned ahead of its place", "G10 L2 P9 R5\n",
-                "p:13:1: error: G59.3 is turned ahead of the line that says where it is"},
-        Refusal{"taken ahead of its place", "G59.3\n", "work offset G59.3 ahead of the line that writes it"},
-        Refusal{"taken without a leave", "G59.3\n", "work offset G59.3 is not defined", ""},
-        Refusal{"written while it is in force",
-                "G10 L2 P9 X#5221 Y#5222 Z#5223 A#5224 C#5226 R0\nG59.3\nG10 L2 P9 R5\n",
-                "p:15:1: error: G59.3 is written while words count from it"},
-        Refusal{"joints in it", "G10 L2 P9 X#5221 Y#5222 Z#5223 A#5224 C#5226 R5\nG59.3\nG0 X10\n",
-                "p:15:4: error: a turned frame without TCP"},
-        Refusal{"left in force", "G10 L2 P9 X#5221 Y#5222 Z#5223 A#5224 C#5226 R0\nG59.3\n",
-                "program end in G59.3: the next program would begin there"},
-        Refusal{"left turned", "G10 L2 P9 X#5221 Y#5222 Z#5223 A#5224 C#5226 R5\n",
-                "program end while G59.3 is turned by 5 deg: the next program would find it so"},
-        Refusal{"R elsewhere", "G0 X10 R5\n", "p:13:8: error: R is read with G10 L2 alone"},
-        Refusal{"R of a plane", "G18 R5\n", "p:13:1: error: G18 is not in the subset"},
-        Refusal{"a parameter that is set", "#5221=4\n", "p:13:1: error: #5221 is the control's own and cannot be set"},
-        Refusal{"a parameter that nobody knows", "G0 X#5241\n",
-                "p:13:4: error: parameter #5241 was never set by the program: what the control itself puts there"},
-        Refusal{"G52 of X", "G52 X5 C6\n", "p:13:8: error: G52 X is not in the subset"},
-        Refusal{"G52 with TCP", "M428\nG52 C6\n", "p:14:5: error: G52 moves the zero of C with TCP on"},
-        Refusal{"G92.1 with TCP", "G52 C6\nM428\nG92.1\n", "the zero of a rotary goes back with TCP on"},
-        Refusal{"G52 that stays", "G52 C6\n", "program end while C counts from 6 deg"},
-        Refusal{"G92", "G92 C0\n", "p:13:1: error: G92 is not in the subset"},
-        Refusal{"G92.2", "G92.2\n", "p:13:1: error: G92.2 is not in the subset"}));
+        RefusedProgram{"an offset of the shop", "G10 L2 P1 X0 Y0 Z0 A0 C0 R6\n",
+                       "p:13:1: error: G10 L2 P1 writes a work offset of the shop: post.index_offset is G59.3"},
+        RefusedProgram{"the one in force", "G10 L2 P0 R6\n",
+                       "p:13:1: error: G10 L2 P0 writes a work offset of the shop"},
+        RefusedProgram{
+            "none is left", "G10 L2 P9 X0 Y0 Z0 A0 C0 R6\n",
+            "p:13:1: error: G10 L2 P9 writes a work offset of the shop: post.index_offset of the machine file "
+            "names none",
+            ""},
+        RefusedProgram{"L20", "G10 L20 P9 X0 Y0 Z0 A0 C0\n", "p:13:1: error: G10 is read with L2 alone"},
+        RefusedProgram{"L1", "G10 L1 P1 Z20\n", "p:13:1: error: G10 is read with L2 alone"},
+        RefusedProgram{"no L", "G10 P9 R5\n", "p:13:1: error: G10 is read with L2 alone"},
+        RefusedProgram{"no turn", "G10 L2 P9 X0 Y0 Z0 A0 C0\n",
+                       "G10 L2 stands in a block of its own, with P, R and axes"},
+        RefusedProgram{"a feed beside it", "G10 L2 P9 X0 Y0 Z0 A0 C0 R5 F100\n",
+                       "p:13:1: error: G10 L2 stands in a block of its own, with P, R and axes"},
+        RefusedProgram{"some axes", "G10 L2 P9 X0 Y0 R5\n",
+                       "p:13:1: error: G10 L2 names all axes of the machine or none"},
+        RefusedProgram{"a zero of C", "G10 L2 P9 X#5221 Y#5222 Z#5223 A#5224 C[#5226+6] R5\n",
+                       "p:13:1: error: G10 L2 moves the zero of C by 6 deg, limit 0: G52 does that"},
+        RefusedProgram{"turned ahead of its place", "G10 L2 P9 R5\n",
+                       "p:13:1: error: G59.3 is turned ahead of the line that says where it is"},
+        RefusedProgram{"taken ahead of its place", "G59.3\n", "work offset G59.3 ahead of the line that writes it"},
+        RefusedProgram{"taken without a leave", "G59.3\n", "work offset G59.3 is not defined", ""},
+        RefusedProgram{"written while it is in force",
+                       "G10 L2 P9 X#5221 Y#5222 Z#5223 A#5224 C#5226 R0\nG59.3\nG10 L2 P9 R5\n",
+                       "p:15:1: error: G59.3 is written while words count from it"},
+        RefusedProgram{"joints in it", "G10 L2 P9 X#5221 Y#5222 Z#5223 A#5224 C#5226 R5\nG59.3\nG0 X10\n",
+                       "p:15:4: error: a turned frame without TCP"},
+        RefusedProgram{"left in force", "G10 L2 P9 X#5221 Y#5222 Z#5223 A#5224 C#5226 R0\nG59.3\n",
+                       "program end in G59.3: the next program would begin there"},
+        RefusedProgram{"left turned", "G10 L2 P9 X#5221 Y#5222 Z#5223 A#5224 C#5226 R5\n",
+                       "program end while G59.3 is turned by 5 deg: the next program would find it so"},
+        RefusedProgram{"R elsewhere", "G0 X10 R5\n", "p:13:8: error: R is read with G10 L2 alone"},
+        RefusedProgram{"R of a plane", "G18 R5\n", "p:13:1: error: G18 is not in the subset"},
+        RefusedProgram{"a parameter that is set", "#5221=4\n",
+                       "p:13:1: error: #5221 is the control's own and cannot be set"},
+        RefusedProgram{
+            "a parameter that nobody knows", "G0 X#5241\n",
+            "p:13:4: error: parameter #5241 was never set by the program: what the control itself puts there"},
+        RefusedProgram{"G52 of X", "G52 X5 C6\n", "p:13:8: error: G52 X is not in the subset"},
+        RefusedProgram{"G52 with TCP", "M428\nG52 C6\n", "p:14:5: error: G52 moves the zero of C with TCP on"},
+        RefusedProgram{"G92.1 with TCP", "G52 C6\nM428\nG92.1\n", "the zero of a rotary goes back with TCP on"},
+        RefusedProgram{"G52 that stays", "G52 C6\n", "program end while C counts from 6 deg"},
+        RefusedProgram{"G92", "G92 C0\n", "p:13:1: error: G92 is not in the subset"},
+        RefusedProgram{"G92.2", "G92.2\n", "p:13:1: error: G92.2 is not in the subset"}));
 
 TEST_P(WrittenOffsetRefusals, NameTheirPlace) {
   const Executed e = executed(GetParam().body, GetParam().index_offset);
