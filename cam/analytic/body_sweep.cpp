@@ -18,17 +18,13 @@ struct NearCells::Found {
   struct Target {
     int zone = 0, tooth = 0;
     std::size_t cell = 0;
-    double cosine = 1, sine = 0;  ///< of the turn from space 0
+    Turn turn{0};  ///< from space 0
     double found = INFINITY;
     Vec3 at = Vec3::Zero();  ///< in space 0
     double height = 0;       ///< above the tip
 
-    [[nodiscard]] Vec3 placed(const Vec3& p) const {
-      return {cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y(), p.z()};
-    }
-    [[nodiscard]] Vec3 back(const Vec3& p) const {
-      return {cosine * p.x() + sine * p.y(), cosine * p.y() - sine * p.x(), p.z()};
-    }
+    [[nodiscard]] Vec3 placed(const Vec3& p) const { return turn(p); }
+    [[nodiscard]] Vec3 back(const Vec3& p) const { return turn.back(p); }
   };
   /// As the tool sees it.
   struct Cell {
@@ -145,11 +141,10 @@ class CellSearch {
     const double pitch = part_.gear().pitch();
     const View first = course_.view(0), last = course_.view(1);
     std::vector<NearCell> out;
-    Target cell{-1, 0, 0, 1, 0};
+    Target cell{-1, 0, 0};
     for (const auto& key : keys()) {
       const int zone = int(key >> 56), tooth = int(key >> 32 & 0xffffff) - kTeeth;
-      if (zone != cell.zone || tooth != cell.tooth)
-        cell = {zone, tooth, 0, std::cos(tooth * pitch), std::sin(tooth * pitch)};
+      if (zone != cell.zone || tooth != cell.tooth) cell = {zone, tooth, 0, Turn(tooth * pitch)};
       cell.cell = std::size_t(key & 0xffffffff);
       const Vec3 c = cell.placed(part_.patches(zone).box(cell.cell).centre), a = first(c), b = last(c);
       out.push_back(

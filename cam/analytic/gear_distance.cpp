@@ -60,17 +60,14 @@ struct GearDistance::Impl {
   double sag = 0;
   double groove_floor = 0;  ///< where there are two rings
   std::optional<Refusal> refusal;
-  int half_turn = 0;  ///< teeth
-  std::vector<std::pair<double, double>>
-      turns;  ///< cosine and sine of the turn of every tooth back to space 0, from -half_turn on
+  int half_turn = 0;        ///< teeth
+  std::vector<Turn> turns;  ///< of every tooth back to space 0, from -half_turn on
 
   explicit Impl(const face_gear::FaceGear& g) : gear(g), pitch(g.pitch()), half_turn(g.parameters().teeth / 2 + 1) {
-    for (int k = -half_turn; k <= half_turn; ++k)
-      turns.emplace_back(std::cos(-double(k) * pitch), std::sin(-double(k) * pitch));
+    for (int k = -half_turn; k <= half_turn; ++k) turns.emplace_back(-double(k) * pitch);
   }
   [[nodiscard]] Vec3 to_space_0(const Vec3& p, double tooth) const {
-    const auto& [c, s] = turns[std::size_t(int(tooth) + half_turn)];
-    return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
+    return turns[std::size_t(int(tooth) + half_turn)](p);
   }
   /// How many teeth a place at radius r lies from space 0: whole numbers are the middles of the openings.
   [[nodiscard]] double spaces_from_0(const GearRing& ring, double r, double azimuth) const {

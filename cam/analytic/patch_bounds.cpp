@@ -94,10 +94,10 @@ struct PatchBounds::Kernels {
     if (piece == face_gear::SpacePiece::root) {
       const Second twist = atan2(Second(-f2.E * f2.Cg), Second(f2.Sg * v)) - f2.shaper.kappa * (v - f2.L0);
       const Second plus = -f2.i * (twist - f2.shaper.psi_c), minus = f2.pitch - f2.i * (twist + f2.shaper.psi_c);
-      p = f2.turned(f2.root_meridian(v).p, Second(plus + u * (minus - plus)));
+      p = turned(f2.root_meridian(v).p, Second(plus + u * (minus - plus)));
     } else {
-      p = f2.turned(f2.flank_housing(s, u, v), Second(-f2.i * f2.flank_phi(s, u, v)));
-      if (s < 0) p = f2.turned(p, f2.pitch);
+      p = turned(f2.flank_housing(s, u, v), Second(-f2.i * f2.flank_phi(s, u, v)));
+      if (s < 0) p = turned(p, f2.pitch);
     }
     Jet jet;
     add(jet, p);
@@ -129,7 +129,7 @@ struct PatchBounds::Kernels {
     return placed(Vec3T<Second>(f2.fillet(side, A, Z).n * blend.at(A, Z)), side);
   }
   [[nodiscard]] Vec3T<Second> placed(const Vec3T<Second>& v, int side) const {
-    return side > 0 ? v : f2.turned(v, f2.pitch);
+    return side > 0 ? v : turned(v, f2.pitch);
   }
 
   /// The fillet from its first derivatives. With P the place in the housing frame, e = e(B), A the normal angle and Z
@@ -152,11 +152,11 @@ struct PatchBounds::Kernels {
     First turn = -f1.i * (B - t * A.v - f1.shaper.kappa * (Z1 - f1.L0));
     if (side < 0) turn += f1.pitch;
     Jet jet;
-    const Vec3T<First> place = f1.turned(P, turn);
+    const Vec3T<First> place = turned(P, turn);
     for (std::size_t k = 0; k < 3; ++k) jet.place[k] = place[int(k)].v;
     for (std::size_t n = 0; n < 2; ++n) {
       const First dB = angle.d[n] - t * A.d[n];
-      const Vec3T<First> d = f1.turned(Vec3T<First>(rounding * A.d[n] + sliding * dB + section * Z.d[n]), turn);
+      const Vec3T<First> d = turned(Vec3T<First>(rounding * A.d[n] + sliding * dB + section * Z.d[n]), turn);
       for (std::size_t k = 0; k < 3; ++k) {
         jet.first[n][k] = d[int(k)].v;
         jet.second[n][k] = d[int(k)].d[0];
@@ -196,7 +196,7 @@ std::optional<CurveBend> PatchBounds::tip_azimuth(int side, const face_gear::Tip
     const face_gear::FaceGearSurface<Second>::FlankPlace place(f, side, u, v);
     Vec3T<Second> P = place.housing();
     if (!field.none()) {
-      const face_gear::FaceGearSurface<Second>::Turn still(Second(0));
+      const TurnT<Second> still(Second(0));
       P += place.point(still).n * field.offset(f, u, P);
     }
     const Second r = sqrt(Second(P[0] * P[0] + P[1] * P[1])),

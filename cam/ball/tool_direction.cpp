@@ -276,8 +276,7 @@ PitchFrame pitch_frame(const analytic::GearDistance& part, int zone) {
   const auto& ring = space.ring().zone;
   const double azimuth = part.space_azimuth(zone, 0.5 * (ring.inner_radius_mm + ring.outer_radius_mm));
   PitchFrame frame;
-  frame.up =
-      face_gear::FaceGearSurface<double>::turned(Vec3(-space.surface().d()), space.surface().Cg == 0 ? 0.0 : azimuth);
+  frame.up = turned(Vec3(-space.surface().d()), space.surface().Cg == 0 ? 0.0 : azimuth);
   frame.side = frame.up.cross(Vec3(std::cos(azimuth), std::sin(azimuth), 0)).normalized();
   frame.outwards = frame.side.cross(frame.up);
   return frame;

@@ -61,14 +61,12 @@ class BallSearch {
       const Vec3 c = p + R * n;
       const auto q = part_.nearest(c, R);
       if (q.distance >= R - kTouch) return R;
-      using Turning = face_gear::FaceGearSurface<double>;
       const double turn = std::atan2(q.point.y(), q.point.x()) - std::atan2(c.y(), c.x());
-      const Vec3 across = q.foot - Turning::turned(p, turn);
+      const Vec3 across = q.foot - turned(p, turn);
       // A foot beside the place is its own curvature, which is known already; one on an edge may be nearer by the sag
       // of the edge's polyline.
       if (across.norm() < kBeside * R || (!q.exact && q.distance >= R - kEdgeSag)) return R;
-      const double ahead = across.dot(Turning::turned(n, turn)),
-                   next = ahead > 0 ? across.squaredNorm() / (2 * ahead) : R;
+      const double ahead = across.dot(turned(n, turn)), next = ahead > 0 ? across.squaredNorm() / (2 * ahead) : R;
       if (!(next < R)) return R;
       R = next;
     }

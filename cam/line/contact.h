@@ -139,7 +139,7 @@ S distance_bend(const face_gear::FaceGearSurface<S>& f, int side, const FlankFoo
   const typename face_gear::FaceGearSurface<S>::FlankPlace at(f, side, foot.at.theta, foot.at.B);
   const auto H = at.shape(at.curvature());
   const auto basis = at.basis(at.turn());
-  const typename face_gear::FaceGearSurface<S>::Turn turn(foot.turn);
+  const TurnT<S> turn(foot.turn);
   const S e = a.dot(turn(basis.e)), l = a.dot(turn(basis.l));
   return H.ee * e * e + S(2) * H.el * e * l + H.ll * l * l;
 }

@@ -16,9 +16,8 @@ namespace {
 
 constexpr double kBodySag = 0.01;  // mm: how far bodies may stand out of the tool where only rapids ask for them
 
-AxisLine<double> turned(const AxisLine<double>& axis, double angle) {
-  return {face_gear::FaceGearSurface<double>::turned(axis.c_0, angle),
-          face_gear::FaceGearSurface<double>::turned(axis.a, angle)};
+AxisLine<double> turned_axis(const AxisLine<double>& axis, double angle) {
+  return {turned(axis.c_0, angle), turned(axis.a, angle)};
 }
 
 /// All passes for one choice of strips and rotaries.
@@ -108,8 +107,8 @@ class PathWriter {
         flank.side > 0 ? 0 : flank.surface.pitch;  // space 0 lies between flank +1 of tooth 0 and flank -1 of tooth 1
     std::vector<LineRecord> records = pass.records;
     for (auto& r : records) {
-      r.axis = turned(with_allowance(flank, r.axis, o_.allowance_mm), turn);
-      r.anchor = face_gear::FaceGearSurface<double>::turned(r.anchor, turn);
+      r.axis = turned_axis(with_allowance(flank, r.axis, o_.allowance_mm), turn);
+      r.anchor = turned(r.anchor, turn);
     }
     if (climbs(records, flank, turn) != o_.climb) std::reverse(records.begin(), records.end());
     zone_ = flank.zone;
@@ -144,10 +143,9 @@ class PathWriter {
   [[nodiscard]] bool climbs(const std::vector<LineRecord>& records, const FlankTask& flank, double turn) const {
     const std::size_t k = records.size() / 2;
     const Vec3 feed = records[k].anchor - records[k - 1].anchor, right = feed.cross(records[k].axis.a);
-    const Vec3 at = face_gear::FaceGearSurface<double>::turned(records[k].anchor, -turn);
+    const Vec3 at = turned(records[k].anchor, -turn);
     const auto on = face_gear::invert_flank(flank.surface, flank.side, at.head<2>().norm(), at.z());
-    return on && face_gear::FaceGearSurface<double>::turned(flank.surface.flank(flank.side, on->theta, on->B).n, turn)
-                         .dot(right) < 0;
+    return on && turned(flank.surface.flank(flank.side, on->theta, on->B).n, turn).dot(right) < 0;
   }
   void record(const Vec3& tip, const Vec3& axis, path::MoveKind kind, double feed) {
     path_.records.push_back({tip, axis, feed, kind, zone_, pass_});
@@ -171,7 +169,7 @@ bool both_follow(const std::vector<Choice>& choices, const Choice& choice) {
 
 /// Azimuth of the axis in the middle of a pass.
 double azimuth_of(const FlankTask& flank, const LinePass& pass) {
-  const Vec3 a = turned(pass.records[pass.records.size() / 2].axis, flank.side > 0 ? 0 : flank.surface.pitch).a;
+  const Vec3 a = turned_axis(pass.records[pass.records.size() / 2].axis, flank.side > 0 ? 0 : flank.surface.pitch).a;
   return std::atan2(a.y(), a.x());
 }
 
@@ -203,7 +201,7 @@ std::vector<std::size_t> shortest_order(const std::vector<FlankTask>& flanks, co
 }  // namespace
 
 AxisLine<double> with_allowance(const FlankTask& flank, const AxisLine<double>& axis, double allowance_mm) {
-  return turned(axis, flank.side * allowance_mm / flank.surface.M2);
+  return turned_axis(axis, flank.side * allowance_mm / flank.surface.M2);
 }
 
 double contact_feed(double feed_mm_min, const FeedLimits& limits, double contact_mm, const Vec3& tip_from,

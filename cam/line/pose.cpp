@@ -95,8 +95,7 @@ std::optional<GapNode> LineFit::gap_at(const AxisLine<double>& axis, double t, c
 
 /// On a modified or corrected flank: from the foot on the plain one, hundredths of a millimetre away.
 std::optional<GapNode> LineFit::displaced_gap(const Vec3& x, double t, const face_gear::FlankFoot<double>& near) const {
-  using Surface = face_gear::FaceGearSurface<double>;
-  const Surface::Turn to_space(flank_.side > 0 ? 0.0 : flank_.surface.pitch);
+  const Turn to_space(flank_.side > 0 ? 0.0 : flank_.surface.pitch);
   const auto foot =
       flank_.displaced->foot(flank_.side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus,
                              to_space(x), near.theta_foot, near.at.B);

@@ -20,7 +20,7 @@ std::vector<path::ToolAxisKey> keys_of(const line::LinePass& pass, const ball::P
   for (const line::LineRecord& record : pass.records) {
     // A pose that is lifted lies on the axis of one that is not, farther out or in: not at its own radius.
     if (record.lift > 0) continue;
-    const Vec3 a = face_gear::FaceGearSurface<double>::turned(record.axis.a, turn);
+    const Vec3 a = turned(record.axis.a, turn);
     const double up = a.dot(frame.up);
     keys.push_back(
         {radius(record.axis.c_0), std::atan(a.dot(frame.outwards) / up), std::atan(a.dot(frame.side) / up) + aside});

@@ -46,10 +46,8 @@ CutsAgain cuts_again(const FirstTooth& first_tooth, std::span<const path::ToolMo
     return out;
   }
   Beside beside(later, cuts, turn);
-  const double c = std::cos(turn), s = std::sin(turn);
-  const auto off = [&](const Vec3& v) {
-    return off_nearest({c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z()}, later, cuts);
-  };
+  const Turn to_later(turn);
+  const auto off = [&](const Vec3& v) { return off_nearest(to_later(v), later, cuts); };
   std::uint32_t behind = cuts.front();  // where the last cut was made again in its order
   std::size_t looks = kMostLooks / cuts.size();
   for (std::size_t k = 0; k < first.size(); ++k) {

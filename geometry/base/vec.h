@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace toothpath {
 
@@ -25,11 +26,29 @@ using Mat3 = Eigen::Matrix3d;
 [[nodiscard]] inline double angle_from_to(const Vec3& from, const Vec3& to) {
   return std::atan2(from.x() * to.y() - from.y() * to.x(), from.x() * to.x() + from.y() * to.y());
 }
+/// A turn about the z axis [rad]: its cosine and sine, for what is turned by it more than once.
+template <typename S>
+struct TurnT {
+  S c{}, s{};
+  explicit TurnT(const S& angle) {
+    using std::cos, std::sin;
+    c = cos(angle);
+    s = sin(angle);
+  }
+  [[nodiscard]] Vec3T<S> operator()(const Vec3T<S>& v) const {
+    return {S(c * v[0] - s * v[1]), S(s * v[0] + c * v[1]), v[2]};
+  }
+  [[nodiscard]] Vec3T<S> back(const Vec3T<S>& v) const {
+    return {S(c * v[0] + s * v[1]), S(c * v[1] - s * v[0]), v[2]};
+  }
+};
+using Turn = TurnT<double>;
 /// p turned about the z axis by `angle` [rad].
-[[nodiscard]] inline Vec3 turned(const Vec3& p, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
+template <typename S>
+[[nodiscard]] Vec3T<S> turned(const Vec3T<S>& p, const std::type_identity_t<S>& angle) {
+  return TurnT<S>(angle)(p);
 }
+[[nodiscard]] inline Vec3 turned(const Vec3& p, double angle) { return Turn(angle)(p); }
 /// Distance from a point to a segment.
 [[nodiscard]] inline double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;

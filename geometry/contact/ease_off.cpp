@@ -23,7 +23,7 @@ class Approach {
       : pinion_(member.pinion), field_(member.on_pinion.get()), side_(member.flank.side), point_(point) {}
 
   [[nodiscard]] std::optional<ToPinion> at(double phi_2) const {
-    return to_pinion(pinion_, field_, side_, pinion_.place(GearTurn(phi_2)(point_)), phi_2 / pinion_.ratio);
+    return to_pinion(pinion_, field_, side_, pinion_.place(Turn(phi_2)(point_)), phi_2 / pinion_.ratio);
   }
   /// How near the pinion is, mm: greatest where it is nearest; never where its involute does not come.
   [[nodiscard]] double operator()(double phi_2) const {

@@ -37,7 +37,7 @@ Lattice lattice_of(const std::vector<ContactMember>& members, const RollOptions&
   lattice.step = f.surface.pitch / options.steps;
   lattice.start = f.surface.i * f.surface.flank_phi(f.side, median_of(f, f.theta), median_of(f, f.B));
   const auto reached = [&](int k) {
-    const GearTurn turn(lattice.phi_2(k));
+    const Turn turn(lattice.phi_2(k));
     return std::any_of(members.begin(), members.end(), [&](const auto& member) {
       const ContactFlank& flank = member.flank;
       for (std::size_t n = 0; n < flank.points.size(); ++n)
@@ -259,7 +259,7 @@ FlankPattern pattern_of(const Roll& roll, std::size_t m) {
     pattern.path.push_back(on_path);
   }
   for (std::size_t p = 0; p < f.points.size(); ++p) {
-    const auto place = pinion.place(GearTurn(roll.lattice.phi_2(moment[p]))(f.points[p]));
+    const auto place = pinion.place(Turn(roll.lattice.phi_2(moment[p]))(f.points[p]));
     pattern.pinion_radius_mm.push_back(place.radius);
     pattern.pinion_Z_mm.push_back(place.Z);
   }

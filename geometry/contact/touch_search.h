@@ -12,13 +12,6 @@
 
 namespace toothpath::contact {
 
-/// A turn about the gear's axis; sine and cosine once for many places.
-struct GearTurn {
-  double c, s;
-  explicit GearTurn(double angle) : c(std::cos(angle)), s(std::sin(angle)) {}
-  Vec3 operator()(const Vec3& v) const { return {c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z()}; }
-};
-
 /// The pinion's turn, times the side, that a place of the gear asks for; never where the pinion has no involute.
 /// @param field  of the pinion; null: plain
 inline double asked_turn(const Pinion<double>& pinion, const modification::Field* field, int side, const Vec3& point) {
@@ -255,7 +248,7 @@ class TouchSearch {
   const ContactFlank& flank_;
   const Pinion<double>& pinion_;
   const modification::Field* on_pinion_;
-  GearTurn turn_;
+  Turn turn_;
   bool exact_, any_ = false;
   std::vector<double> nodes_;
   std::vector<Rows> columns_;

@@ -8,7 +8,6 @@
 
 #include <cmath>
 
-#include "geometry/base/turn.h"
 #include "geometry/base/vec.h"
 #include "geometry/cylindrical/parameters.h"
 #include "geometry/tooth_space/tooth_space.h"

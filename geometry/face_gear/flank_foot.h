@@ -76,7 +76,7 @@ std::optional<FlankFoot<S>> flank_foot(const FaceGearSurface<S>& f, int side, co
   out.turn = atan2(S(on.p[0] * x[1] - on.p[1] * x[0]), S(on.p[0] * x[0] + on.p[1] * x[1]));
   out.d = S(side) * f.M2 * out.turn;
   out.theta_foot = out.at.theta + out.d * f.shaper.cos_bb / f.shaper.r_b;
-  out.n = f.turned(on.n, out.turn);
+  out.n = turned(on.n, out.turn);
   return out;
 }
 

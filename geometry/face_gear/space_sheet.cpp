@@ -32,7 +32,7 @@ struct Radius {
         v((q.p.x() * q.pv.x() + q.p.y() * q.pv.y()) / r) {}
 };
 
-PatchPoint turned(const PatchPoint& q, const FaceGearSurface<double>::Turn& turn) {
+PatchPoint placed(const PatchPoint& q, const Turn& turn) {
   return {turn(q.p), turn(q.n), turn(q.pu), turn(q.pv), turn(q.nu), turn(q.nv)};
 }
 
@@ -72,7 +72,7 @@ SurfacePointT<S> SpaceSheet::root_point(const FaceGearSurface<S>& f, const S& fr
   const S turn_plus = -f.i * (twist - f.shaper.psi_c), turn_minus = f.pitch - f.i * (twist + f.shaper.psi_c);
   const S turn = turn_plus + fraction * (turn_minus - turn_plus);
   const auto m = f.root_meridian(Z);
-  return {FaceGearSurface<S>::turned(m.p, turn), FaceGearSurface<S>::turned(m.n, turn)};
+  return {turned(m.p, turn), turned(m.n, turn)};
 }
 
 std::optional<PatchPoint> SpaceSheet::plain(SpacePiece piece, double u, double v) const {
@@ -179,7 +179,7 @@ std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) c
   const bool plain_here = !ring_.displaced() || piece == SpacePiece::root;
   const auto q = plain_here ? plain(piece, u, v) : displaced(piece, u, v, true);
   if (!q || piece == SpacePiece::root) return q;
-  return side_of(piece) > 0 ? q : turned(*q, to_minus_);
+  return side_of(piece) > 0 ? q : placed(*q, to_minus_);
 }
 
 std::optional<FlankCoordinates> SpaceSheet::invert(int side, double r, double z,
@@ -253,7 +253,7 @@ std::optional<PatchPoint> SpaceSheet::point(SpacePiece piece, double u, double v
   if (ring_.displaced()) {
     const auto q = piece == SpacePiece::root ? plain(piece, u, v) : displaced(piece, u, v, false);
     if (!q || piece == SpacePiece::root) return q;
-    return side_of(piece) > 0 ? q : turned(*q, to_minus_);
+    return side_of(piece) > 0 ? q : placed(*q, to_minus_);
   }
   const auto& f = ring_.surface;
   const int s = side_of(piece);

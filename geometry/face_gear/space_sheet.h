@@ -103,7 +103,7 @@ class SpaceSheet {
   FaceGearRing ring_;
   FaceGearSurface<Dual2> dual_;
   FaceGearSurface<Second> second_;
-  FaceGearSurface<double>::Turn to_minus_;  ///< from the minus flank of tooth 0 to that of the space 0 | 1
+  Turn to_minus_;  ///< from the minus flank of tooth 0 to that of the space 0 | 1
   std::array<std::shared_ptr<const FilletBlend>, 2> blends_;  ///< sides +1 and -1; empty: plain
 };
 

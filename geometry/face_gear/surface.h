@@ -49,24 +49,6 @@ struct FaceGearSurface {
     const S s = sin(x);
     return {S(Cg * s), cos(x), S(Sg * s)};
   }
-  /// A turn about z: its cosine and sine, for what is turned by it more than once.
-  struct Turn {
-    S c{}, s{};
-    explicit Turn(const S& angle) {
-      using std::cos, std::sin;
-      c = cos(angle);
-      s = sin(angle);
-    }
-    [[nodiscard]] Vec3T<S> operator()(const Vec3T<S>& v) const {
-      return {S(c * v[0] - s * v[1]), S(s * v[0] + c * v[1]), v[2]};
-    }
-    [[nodiscard]] Vec3T<S> back(const Vec3T<S>& v) const {
-      return {S(c * v[0] + s * v[1]), S(c * v[1] - s * v[0]), v[2]};
-    }
-  };
-  /// v turned about z by `angle`.
-  static Vec3T<S> turned(const Vec3T<S>& v, const S& angle) { return Turn(angle)(v); }
-
   /// Shape operator in an orthonormal tangent basis (e, l), convex positive.
   struct ShapeOperator {
     S ee{}, el{}, ll{};
@@ -117,9 +99,9 @@ struct FaceGearSurface {
     }
     /// Roll angle phi of the shaper at which the place is cut.
     [[nodiscard]] S phi() const { return B_ - side_ * (f_.shaper.theta_0 + theta_) - f_.shaper.kappa * (Z_ - f_.L0); }
-    [[nodiscard]] Turn turn() const { return Turn(S(-f_.i * phi())); }
+    [[nodiscard]] TurnT<S> turn() const { return TurnT<S>(S(-f_.i * phi())); }
     /// Point and normal, (3.3).
-    [[nodiscard]] SurfacePointT<S> point(const Turn& turn) const {
+    [[nodiscard]] SurfacePointT<S> point(const TurnT<S>& turn) const {
       const Vec3T<S> n = (t() * f_.shaper.cos_bb - f_.a() * f_.shaper.sin_bb) * side_;
       return {turn(housing()), turn(n)};
     }
@@ -147,7 +129,7 @@ struct FaceGearSurface {
       H.ll = f_.Sg * cB_ * f_.shaper.r_b * theta_ / k.J;
       return H;
     }
-    [[nodiscard]] TangentBasis basis(const Turn& turn) const {
+    [[nodiscard]] TangentBasis basis(const TurnT<S>& turn) const {
       return {turn(e()), turn(Vec3T<S>(t() * f_.shaper.sin_bb + f_.a() * f_.shaper.cos_bb))};
     }
     /// Derivatives of the place as the gear stands still: those of `housing()` but for its turn with the gear.
@@ -158,7 +140,7 @@ struct FaceGearSurface {
       return f_.a() * Z_B() + t() * f_.shaper.r_b + e() * S(side_ * f_.shaper.r_b * theta_);
     }
     /// dP/dtheta and dP/dB (4.2). @param at  the `point` of the same turn
-    [[nodiscard]] Derivatives derivatives(const SurfacePointT<S>& at, const Turn& turn) const {
+    [[nodiscard]] Derivatives derivatives(const SurfacePointT<S>& at, const TurnT<S>& turn) const {
       const S cb = f_.shaper.cos_bb;
       const Vec3T<S> kxP(-at.p[1], at.p[0], S(0));
       return {kxP * S(f_.i * side_ / (cb * cb)) - at.n * S(f_.shaper.r_b / cb),
@@ -200,7 +182,7 @@ struct FaceGearSurface {
   }
   [[nodiscard]] Derivatives flank_derivatives(int s, const S& theta, const S& B) const {
     const FlankPlace at(*this, s, theta, B);
-    const Turn turn = at.turn();
+    const TurnT<S> turn = at.turn();
     return at.derivatives(at.point(turn), turn);
   }
 
@@ -288,7 +270,7 @@ typename FaceGearSurface<S>::FilletPoint FaceGearSurface<S>::swept_profile(int s
   const Vec3T<S> P_f(S(Z * Sg - x * Cg), S(E + y), S(-Z * Cg - x * Sg));
   const S tan_delta = kappa * h, cd = S(1) / sqrt(S(S(1) + tan_delta * tan_delta)), sd = tan_delta * cd;
   const Vec3T<S> t_B(S(Cg * sB), cB, S(Sg * sB));
-  const Turn turn(S(-i * (f.B - side * A - kappa * (Z - L0))));
+  const TurnT<S> turn(S(-i * (f.B - side * A - kappa * (Z - L0))));
   f.p = turn(P_f);
   f.n = turn(Vec3T<S>((t_B * cd - a() * sd) * side));
   return f;

@@ -20,7 +20,7 @@ class ShaperPassing {
 
   /// Transverse distance to the shaper at roll angle phi, positive outside it.
   [[nodiscard]] double operator()(double phi) const {
-    const Vec3 p = FaceGearSurface<double>::turned(point_, f_.i * phi);
+    const Vec3 p = turned(point_, f_.i * phi);
     const double Z = p.dot(f_.a()), x = p.dot(f_.d()), y = p.y() - f_.E, R = std::hypot(x, y);
     if (Z <= 0) return R + w_.r_a;  // behind the gear axis: not the cutting side
     const double pitch = 2 * kPi / w_.teeth;

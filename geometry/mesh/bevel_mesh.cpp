@@ -148,7 +148,7 @@ Result<TriangleMesh> bevel_gear_mesh(const bevel_gear::BevelGear& g, const Bevel
   std::vector<std::vector<std::int32_t>> index(loop.size(), std::vector<std::int32_t>(around));
   for (std::size_t i = 0; i < loop.size(); ++i)
     for (std::size_t k = 0; k < teeth; ++k) {
-      const double turn = g.pitch() * static_cast<double>(k), c = std::cos(turn), s = std::sin(turn);
+      const Turn turn(g.pitch() * static_cast<double>(k));
       for (std::size_t j = 0; j < n; ++j) {
         const Vec3& p = loop[i].points[j];
         const std::size_t at = k * n + j;
@@ -158,7 +158,7 @@ Result<TriangleMesh> bevel_gear_mesh(const bevel_gear::BevelGear& g, const Bevel
           continue;
         }
         index[i][at] = static_cast<std::int32_t>(mesh.vertices.size());
-        mesh.vertices.push_back({c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()});
+        mesh.vertices.push_back(turn(p));
       }
     }
   for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -203,11 +203,11 @@ Result<TriangleMesh> bevel_pitch_mesh(const bevel_gear::BevelGear& g, std::vecto
   TriangleMesh mesh;
   patch.clear();
   const std::size_t n = rows->front().points.size() + 1;
-  const double c = std::cos(g.pitch()), s = std::sin(g.pitch());
+  const Turn pitch(g.pitch());
   for (const auto& row : *rows) {
     for (std::size_t j = 0; j < n; ++j) {
       Vec3 p = row.points[j % (n - 1)];
-      if (j + 1 == n) p = Vec3(c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z());
+      if (j + 1 == n) p = pitch(p);
       mesh.vertices.push_back(p);
       patch.push_back(j + 1 == n ? row.patch.back() : row.patch[j]);
     }

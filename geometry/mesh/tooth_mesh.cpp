@@ -49,7 +49,7 @@ Vec3 turned_by_pitches(const Vec3& p, int k, int teeth) {
   const int reduced = ((k % teeth) + teeth) % teeth;
   if (reduced == 0) return p;
   const double angle = 2 * kPi * reduced / teeth;
-  return face_gear::FaceGearSurface<double>::turned(p, angle);
+  return turned(p, angle);
 }
 
 Result<ToothMesh> mesh_tooth_space(const face_gear::FaceGear& gear, double tolerance_mm) {
@@ -155,10 +155,9 @@ std::optional<face_gear::SurfacePointT<double>> exact_patch_point(const face_gea
     case Patch::root: {
       const Vec3 left = f.fillet(1, f.shaper.A_e, uv.y()).p;
       const Vec3 right = turned_by_pitches(f.fillet(-1, f.shaper.A_e, uv.y()).p, 1, teeth);
-      const Vec3 p = face_gear::FaceGearSurface<double>::turned(left, uv.x() * angle_from_to(left, right));
+      const Vec3 p = turned(left, uv.x() * angle_from_to(left, right));
       const auto meridian = f.root_meridian(uv.y());
-      return face_gear::SurfacePointT<double>{
-          p, face_gear::FaceGearSurface<double>::turned(meridian.n, angle_from_to(meridian.p, p))};
+      return face_gear::SurfacePointT<double>{p, turned(meridian.n, angle_from_to(meridian.p, p))};
     }
     case Patch::tip: {
       const double r = uv.y(), Z = std::sqrt(r * r - f.E * f.E), slope = -f.Cg / f.Sg * r / Z;

@@ -140,9 +140,7 @@ std::optional<SectionPoint> ToothSection::point(std::size_t segment, double frac
     case Segment::flank_minus: return flank_point(minus, 1 - fraction);
     case Segment::root: {
       SectionPoint end{root_edge_[fraction < 0.5 ? 0 : 1], {fraction, plus.Z_e}};
-      if (fraction > 0 && fraction < 1) {
-        end.p = face_gear::FaceGearSurface<double>::turned(root_edge_[0], fraction * root_width_);
-      }
+      if (fraction > 0 && fraction < 1) { end.p = turned(root_edge_[0], fraction * root_width_); }
       return end;
     }
     case Segment::land_left: {

@@ -54,11 +54,7 @@ double by_sign(double word, double now) {
   return to;
 }
 
-Vec3 turned_deg(const Vec3& v, double deg) {
-  if (deg == 0) return v;
-  const double c = std::cos(radians(deg)), s = std::sin(radians(deg));
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z()};
-}
+Vec3 turned_deg(const Vec3& v, double deg) { return deg == 0 ? v : turned(v, radians(deg)); }
 
 }  // namespace
 

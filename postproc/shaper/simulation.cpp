@@ -27,9 +27,8 @@ struct Seen {
   Plane at;
 };
 Seen seen_from_cutter(const face_gear::FaceGearSurface<double>& gear, const Vec3& point, double work, double x_lift) {
-  const double c = std::cos(work), s = std::sin(work);
-  const double px = c * point.x() - s * point.y(), py = s * point.x() + c * point.y(), pz = point.z();
-  return {px * gear.Sg - pz * gear.Cg, {-px * gear.Cg - pz * gear.Sg + x_lift, py - gear.E}};
+  const Vec3 p = turned(point, work);
+  return {p.x() * gear.Sg - p.z() * gear.Cg, {-p.x() * gear.Cg - p.z() * gear.Sg + x_lift, p.y() - gear.E}};
 }
 
 /// Distance of a point of the transverse plane to the cutter turned by `turn`.
@@ -149,8 +148,7 @@ std::vector<FlankSample> flank_samples(const face_gear::FaceGearSurface<double>&
         if (!at) continue;
         const auto p = gear.flank(side, at->theta, at->B);
         const double turn = gear.pitch * tooth;
-        samples.push_back({side, at->theta, at->B, face_gear::FaceGearSurface<double>::turned(p.p, turn),
-                           face_gear::FaceGearSurface<double>::turned(p.n, turn)});
+        samples.push_back({side, at->theta, at->B, turned(p.p, turn), turned(p.n, turn)});
       }
     }
   return samples;
@@ -230,7 +228,7 @@ BackStrokeClearance back_stroke_clearance(const ShaperSetup& s, double relief_mm
       if (Z > std::max(s.start_mm, s.end_mm) || Z < std::min(s.start_mm, s.end_mm)) continue;
       const Vec3 housing = gear.b() * across + gear.a() * Z + gear.d() * (x - relief_mm);
       const double above = housing.z() - gear.z_tip(r);
-      const Vec3 point = face_gear::FaceGearSurface<double>::turned(housing, -work);
+      const Vec3 point = turned(housing, -work);
       if (above >= std::min(clearance.flank_mm, clearance.stock_mm)) continue;
       clearance.flank_mm = std::min(clearance.flank_mm, std::max(above, -generated_distance(gear, point)));
       clearance.stock_mm = std::min(clearance.stock_mm, std::max(above, -swept_distance(gear, strokes, point)));

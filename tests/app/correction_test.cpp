@@ -83,7 +83,7 @@ class CutFlanks {
   }
   /// The flank of side -1 that space 0 sees is that of tooth 1.
   [[nodiscard]] double at(const inspection::InspectionPoint& p, double pitch) const {
-    return swept_->excess(p.side > 0 ? p.p : face_gear::FaceGearSurface<double>::turned(p.p, pitch), 1.0);
+    return swept_->excess(p.side > 0 ? p.p : turned(p.p, pitch), 1.0);
   }
 
  private:

@@ -99,7 +99,7 @@ Stands stands_on(const std::vector<std::pair<Vec3, Vec3>>& way, double ball, con
         const auto at = face_gear::invert_flank(f, side, r, top + (low - top) * (0.02 + 0.96 * n / 20));
         if (!at || at->theta < 0) continue;
         Vec3 p = modified_by_the_words<double>(f, parameters, 0, side, at->theta, at->B);
-        if (side < 0) p = face_gear::FaceGearSurface<double>::turned(p, gear.pitch());
+        if (side < 0) p = turned(p, gear.pitch());
         double least = INFINITY;
         for (const auto& [a, b] : way) {
           const Vec3 along = b - a;

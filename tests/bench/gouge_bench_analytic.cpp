@@ -36,8 +36,7 @@ std::vector<Pose> poses_of(const face_gear::FaceGear& gear, const analytic::Gear
     if (!q) continue;
     const double lean = uniform(0, 0.05), to = uniform(0, 6.28), turn = gear.pitch() * double(generator() % 180);
     const Vec3 axis(std::sin(lean) * std::cos(to), std::sin(lean) * std::sin(to), std::cos(lean));
-    poses.push_back(
-        {face_gear::FaceGearSurface<double>::turned(Vec3(q->p + (tool.radius_mm() + 1e-4) * q->n), turn), axis});
+    poses.push_back({turned(Vec3(q->p + (tool.radius_mm() + 1e-4) * q->n), turn), axis});
   }
   return poses;
 }

@@ -17,7 +17,7 @@ double lookup(const std::vector<double>& y, double share) {
   return y[k] + (t - double(k)) * (y[k + 1] - y[k]);
 }
 
-Vec3 about_z(const Vec3& p, double angle) { return face_gear::FaceGearSurface<double>::turned(p, angle); }
+Vec3 about_z(const Vec3& p, double angle) { return turned(p, angle); }
 double azimuth(const Vec3& p) { return std::atan2(p.y(), p.x()); }
 
 /// Section Z whose root circle has radius r.

@@ -60,8 +60,7 @@ process::ValueOrErrors<process::CutFlanks> shaped_flanks(const job::Job& job, co
       const Vec3& p = flank.nominal[k];
       const double pitch = setup.surface.pitch, middle = std::atan2(setup.surface.E, setup.surface.L_p);
       const double turn = -pitch * std::round((std::atan2(p.y(), p.x()) - middle) / pitch);
-      flank.deviation_mm[k] =
-          shaper::swept_distance(setup.surface, strokes, face_gear::FaceGearSurface<double>::turned(p, turn));
+      flank.deviation_mm[k] = shaper::swept_distance(setup.surface, strokes, turned(p, turn));
     });
   }
   return cut;

@@ -146,7 +146,7 @@ TEST_P(Patches, TheSolidIsCovered) {
         if (at.z() < gear.lowest_root() - 0.45) continue;  // the ends are followed to 0.5 mm below the lowest root
         bool held = false;
         for (int tooth = -2; tooth <= 2 && !held; ++tooth) {
-          const Vec3 p = face_gear::FaceGearSurface<double>::turned(at, tooth * gear.pitch());
+          const Vec3 p = turned(at, tooth * gear.pitch());
           for (int in = 0; in < part.zones() && !held; ++in) {
             const auto& patches = part.patches(in);
             part.cell_index(in).near(p, patches.search_margin() + 1e-6, [&](std::size_t cell, double radius) {

@@ -250,7 +250,7 @@ TEST_P(Distance, TheSameAtEveryTooth) {
     const int zone = int(random.index(std::size_t(part.zones()))), patch = int(random.index(6));
     const double x = random(0, 1), y = random(0, 1), d = random(0, reach);
     const Vec3 c = brute.point(zone, patch, x, y) + d * brute.normal(zone, patch, x, y);
-    const Vec3 turned = face_gear::FaceGearSurface<double>::turned(c, k * gear.pitch());
+    const Vec3 turned = toothpath::turned(c, k * gear.pitch());
     const auto q = part.nearest(c, reach), t = part.nearest(turned, reach);
     EXPECT_NEAR(q.distance, t.distance, q.exact && t.exact ? 1e-10 : 2e-5) << k << " " << q.patch << " " << t.patch;
   }

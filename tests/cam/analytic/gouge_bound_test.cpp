@@ -221,7 +221,7 @@ TEST_P(RandomBodies, TenfoldSamplingNeverExceedsTheBound) {
       // The gap that is told exists: at its place, at some moment.
       double there = INFINITY;
       for (int tooth = 0; tooth < job.gear.parameters().teeth; ++tooth) {
-        const Vec3 p = face_gear::FaceGearSurface<double>::turned(found.place, tooth * job.gear.pitch());
+        const Vec3 p = turned(found.place, tooth * job.gear.pitch());
         if ((p - m.tip_from).norm() > body.to + r1 + 4) continue;
         for (int s = 0; s <= 1000; ++s)
           there = std::min(there, -test::depth_in_body(p, {body.from, body.to, r0, r1, false},

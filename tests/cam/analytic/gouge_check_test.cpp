@@ -58,7 +58,7 @@ TEST(WrongPrograms, ShiftedZone) {
   const auto& job = job_named("dhfg");
   auto path = job.plan.paths.back();
   for (auto& r : path.records)
-    if (r.zone == 1) r.tip = face_gear::FaceGearSurface<double>::turned(r.tip, 0.005 / 121);  // 5 um along the circle
+    if (r.zone == 1) r.tip = turned(r.tip, 0.005 / 121);  // 5 um along the circle
   const auto r = check(job, analytic::GougeCheck::motions_of(path));
   EXPECT_FALSE(passes(job, r));
   EXPECT_EQ(r.deepest.zone, 1);
@@ -99,13 +99,13 @@ TEST(WrongPrograms, OneToothOnly) {
   const double pitch = job.gear.pitch();
   for (auto& m : motions) {
     m.tooth = 17;
-    m.tip_from = face_gear::FaceGearSurface<double>::turned(m.tip_from, 17 * pitch);
-    m.tip_to = face_gear::FaceGearSurface<double>::turned(m.tip_to, 17 * pitch);
+    m.tip_from = turned(m.tip_from, 17 * pitch);
+    m.tip_to = turned(m.tip_to, 17 * pitch);
   }
   EXPECT_TRUE(passes(job, check(job, motions)));
   for (auto& m : motions) {
-    m.tip_from = face_gear::FaceGearSurface<double>::turned(m.tip_from, 0.005 / 62);
-    m.tip_to = face_gear::FaceGearSurface<double>::turned(m.tip_to, 0.005 / 62);
+    m.tip_from = turned(m.tip_from, 0.005 / 62);
+    m.tip_to = turned(m.tip_to, 0.005 / 62);
   }
   const auto r = check(job, motions);
   EXPECT_FALSE(passes(job, r));

@@ -81,8 +81,8 @@ class Planter {
       const Vec3 c = centre(record, R);
       const auto q = job_.part->nearest(c, R + 0.1);
       if (!(q.distance < R + 0.1) || q.distance <= 0) return false;
-      const Vec3 foot = face_gear::FaceGearSurface<double>::turned(
-          q.foot, std::remainder(std::atan2(c.y(), c.x()) - std::atan2(q.point.y(), q.point.x()), 2 * kPi));
+      const Vec3 foot =
+          turned(q.foot, std::remainder(std::atan2(c.y(), c.x()) - std::atan2(q.point.y(), q.point.x()), 2 * kPi));
       if (std::abs((foot - c).norm() - q.distance) > 1e-5) return false;  // an edge: its foot is only near
       record.tip += (foot - c).normalized() * (q.distance - (R - 0.002));
     }

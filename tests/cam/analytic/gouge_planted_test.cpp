@@ -152,8 +152,7 @@ TEST_P(EveryBody, IsFoundWithinAFifthOfAMicrometre) {
       double best = -INFINITY;
       for (int tooth = -8; tooth <= 8; ++tooth)
         for (int step = 0; step <= 400; ++step) {
-          const Vec3 p =
-              face_gear::FaceGearSurface<double>::turned(named->point, (fault->truth.tooth + tooth) * job.gear.pitch());
+          const Vec3 p = turned(named->point, (fault->truth.tooth + tooth) * job.gear.pitch());
           best = std::max(best, test::depth_in_body(p, fault->shape, path::tip_at(fault->motion, step / 400.0),
                                                     path::axis_at(fault->motion, step / 400.0)));
         }
@@ -168,13 +167,11 @@ TEST_P(EveryBody, IsFoundWithinAFifthOfAMicrometre) {
     }
     EXPECT_NEAR(depth, truth, 2e-4);
     EXPECT_GE(bound, fault->truth.depth - 1e-7);
-    const Vec3 truth_0 =
-        face_gear::FaceGearSurface<double>::turned(fault->truth.place, -fault->truth.tooth * job.gear.pitch());
+    const Vec3 truth_0 = turned(fault->truth.place, -fault->truth.tooth * job.gear.pitch());
     // Shifted by whole pitches: a place is told in tooth space 0, a land belongs to two of them.
     double away = INFINITY;
     for (int tooth = -1; tooth <= 1; ++tooth)
-      away = std::min(
-          away, (face_gear::FaceGearSurface<double>::turned(named->point, tooth * job.gear.pitch()) - truth_0).norm());
+      away = std::min(away, (turned(named->point, tooth * job.gear.pitch()) - truth_0).norm());
     // Along a line of contact many places are equally deep: then the one that is named must be among them.
     const bool right = away <= 0.1 || depth_at_named() >= truth - 2e-4;
     EXPECT_TRUE(right) << "reported " << named->point.transpose() << " true " << truth_0.transpose();

@@ -73,7 +73,7 @@ TEST(SinglePrecision, MissesAGougeAtThreeHundredMillimetres) {
     if (!q) continue;
     const double depth = limit + random(1e-6, 3e-5);  // a gouge just beyond the limit
     const double turn = gear.pitch() * double(random.index(200));
-    const auto placed = [&](const Vec3& x) { return face_gear::FaceGearSurface<double>::turned(x, turn); };
+    const auto placed = [&](const Vec3& x) { return turned(x, turn); };
     const Vec3 c = placed(q->p + (R - depth) * q->n);
     if (std::abs(part.nearest(c, R + 0.1).distance - (R - depth)) > 1e-8) continue;  // another surface is nearer
     ++planted;

@@ -64,7 +64,7 @@ TEST(CorrectedPath, PlannedAndProvenAgainstTheCorrectedFlanksAndWrongForTheOther
   for (const auto& [rows, columns] : {std::pair{5, 9}, std::pair{13, 25}}) {
     double left = 0;
     for (const auto& p : grid_of(nominal, rows, columns)) {
-      const Vec3 at = p.side > 0 ? p.p : face_gear::FaceGearSurface<double>::turned(p.p, nominal.pitch());
+      const Vec3 at = p.side > 0 ? p.p : turned(p.p, nominal.pitch());
       left = std::max(left, std::abs(swept.excess(at, 1.0) + process_error(p.side, double(p.row) / (rows - 1),
                                                                            double(p.column) / (columns - 1))));
     }

@@ -196,8 +196,7 @@ TEST(PrescribedAxes, RefusalsNameThePlaceTheBodyAndTheLimit) {
       for (int patch = 0; patch < 6; ++patch)
         for (int i = 0; i <= 10; ++i)
           for (int j = 0; j <= 10; ++j) {
-            const Vec3 p = face_gear::FaceGearSurface<double>::turned(brute.point(0, patch, i / 10.0, j / 10.0),
-                                                                      tooth * gear.pitch());
+            const Vec3 p = turned(brute.point(0, patch, i / 10.0, j / 10.0), tooth * gear.pitch());
             least = std::min(least, test::distance_to_frustum(p, body, tip, axis));
           }
   EXPECT_EQ(least, 0) << "it is inside";

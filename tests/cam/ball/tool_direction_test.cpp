@@ -85,8 +85,7 @@ TEST(Body, GapAgainstSampledSurfaces) {
       const Vec3 tip(r * std::cos(a), r * std::sin(a), random(gear.lowest_root(), gear.blank_top() + 0.3 * m));
       double truth = INFINITY;
       for (int tooth = -3; tooth <= 3; ++tooth) {
-        const Vec3 t = face_gear::FaceGearSurface<double>::turned(tip, -tooth * gear.pitch()),
-                   u = face_gear::FaceGearSurface<double>::turned(axis, -tooth * gear.pitch());
+        const Vec3 t = turned(tip, -tooth * gear.pitch()), u = turned(axis, -tooth * gear.pitch());
         for (const auto& p : samples) truth = std::min(truth, test::distance_to_frustum(p, f, t, u));
       }
       const double enough = 0.6 * m;

@@ -55,8 +55,7 @@ double sampled_gap(const std::vector<Vec3>& samples, double pitch, const tool::F
                    const Vec3& axis) {
   double truth = INFINITY;
   for (int tooth = -2; tooth <= 2; ++tooth) {
-    const Vec3 t = face_gear::FaceGearSurface<double>::turned(tip, -tooth * pitch),
-               u = face_gear::FaceGearSurface<double>::turned(axis, -tooth * pitch);
+    const Vec3 t = turned(tip, -tooth * pitch), u = turned(axis, -tooth * pitch);
     for (const auto& p : samples) truth = std::min(truth, test::distance_to_frustum(p, f, t, u));
   }
   return truth;
@@ -70,8 +69,7 @@ double flat_gap(const analytic::GearDistance& part, const tool::Frustum& f, cons
   double best = enough + sag;
   for (int zone = 0; zone < part.zones(); ++zone)
     for (int tooth = -4; tooth <= 4; ++tooth) {
-      const Vec3 t = face_gear::FaceGearSurface<double>::turned(tip, -tooth * part.gear().pitch()),
-                 u = face_gear::FaceGearSurface<double>::turned(axis, -tooth * part.gear().pitch());
+      const Vec3 t = turned(tip, -tooth * part.gear().pitch()), u = turned(axis, -tooth * part.gear().pitch());
       for (const auto& [a, b, c] : part.triangles(zone))
         best = test::triangle_gap(a, b, c, f, t, u, best, resolution, 8);
     }

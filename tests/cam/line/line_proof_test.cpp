@@ -91,7 +91,7 @@ std::vector<Vec3> flank_points(const Planned& p, const face_gear::FaceGearParame
       },
       columns, rows);
   if (side < 0)
-    for (auto& q : points) q = face_gear::FaceGearSurface<double>::turned(q, p.gear.pitch());
+    for (auto& q : points) q = turned(q, p.gear.pitch());
   return points;
 }
 
@@ -196,7 +196,7 @@ std::vector<Vec3> modified_points(const Planned& p, int zone, int side, int colu
       const auto at = face_gear::invert_flank(f, side, r, top + (low - top) * (k + 0.01) / (rows - 0.98));
       if (!at) continue;
       const Vec3 q = modified_by_the_words<double>(f, p.gear.parameters(), zone, side, at->theta, at->B);
-      out.push_back(side > 0 ? q : face_gear::FaceGearSurface<double>::turned(q, p.gear.pitch()));
+      out.push_back(side > 0 ? q : turned(q, p.gear.pitch()));
     }
   }
   return out;
@@ -248,14 +248,11 @@ TEST_P(LineProof, PlantedErrorsAreFound) {
     const auto clean = pass_of(p, pass.zone, pass.side);
     const auto f = *line::flank_task(p.gear, pass.zone, pass.side);
     const double turn = pass.side > 0 ? 0 : p.gear.pitch(), length = pass.contact_top_mm - r_0;
-    const bool forwards =
-        (face_gear::FaceGearSurface<double>::turned(pass.records.front().axis.a, turn) - clean.way.front().axis)
-            .norm() < 1e-12;
+    const bool forwards = (turned(pass.records.front().axis.a, turn) - clean.way.front().axis).norm() < 1e-12;
     const auto normal = [&](std::size_t k) {
       const Vec3& a = pass.records[forwards ? k : pass.records.size() - 1 - k].anchor;
       const auto at = face_gear::invert_flank(f.surface, f.side, a.head<2>().norm(), a.z());
-      return at ? face_gear::FaceGearSurface<double>::turned(f.surface.flank(f.side, at->theta, at->B).n, turn)
-                : Vec3(Vec3::Zero());
+      return at ? turned(f.surface.flank(f.side, at->theta, at->B).n, turn) : Vec3(Vec3::Zero());
     };
     const auto expect = [&](const char* what, const std::vector<BrutePose>& way, const tool::Profile& tool,
                             double least) {

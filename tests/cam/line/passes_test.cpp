@@ -336,9 +336,7 @@ TEST(LinePlans, PathOfTheQuarterGear) {
     ++rapids, ++engages;
     const std::size_t first = k + 1, count = pass.records.size();
     EXPECT_EQ(records[first].zone, pass.zone);
-    const bool forwards =
-        (face_gear::FaceGearSurface<double>::turned(pass.records.front().axis.a, turn) - records[first].axis).norm() <
-        1e-12;
+    const bool forwards = (turned(pass.records.front().axis.a, turn) - records[first].axis).norm() < 1e-12;
     double minutes = 0, contact = 0;
     for (std::size_t n = 1; n < count; ++n) {
       const auto& r = records[first + n];
@@ -347,7 +345,7 @@ TEST(LinePlans, PathOfTheQuarterGear) {
       const auto& a = pass.records[forwards ? n : count - 1 - n];
       const auto& b = pass.records[forwards ? n - 1 : count - n];
       contact += (a.anchor - b.anchor).norm();
-      EXPECT_LE((face_gear::FaceGearSurface<double>::turned(a.axis.c_0 - 0.25 * a.axis.a, turn) - r.tip).norm(), 1e-12);
+      EXPECT_LE((turned(a.axis.c_0 - 0.25 * a.axis.a, turn) - r.tip).norm(), 1e-12);
     }
     EXPECT_NEAR(contact / minutes, 300, 1e-6);
     k = first + count;

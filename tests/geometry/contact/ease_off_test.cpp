@@ -71,7 +71,7 @@ class SweptPinion {
   /// Along the normal from the place to the flank; NaN where the line does not meet it.
   [[nodiscard]] double gap(const Vec3& point, const Vec3& normal, double phi_2, Vec3& start) const {
     const double phi_1 = phi_2 * gear_.parameters().teeth / teeth_;
-    const auto turned = [&](const Vec3& v) { return face_gear::FaceGearSurface<double>::turned(v, phi_2); };
+    const auto turned = [&](const Vec3& v) { return toothpath::turned(v, phi_2); };
     const Vec3 p = turned(point), n = turned(normal);
     Vec3 x = start;  // R, Z, gap
     const auto miss = [&](const Vec3& at) { return Vec3(place(at[0], at[1], phi_1) - p - at[2] * n); };

@@ -34,8 +34,7 @@ class Pair {
   /// Unknowns: theta, B, theta_1, Z_1, phi_2. Zero: same point (3), same normal (2 of its components).
   [[nodiscard]] Vec5 residual(int s, double phi_1, const Vec5& x) const {
     const auto gear = f_.flank(s, x[0], x[1]);
-    const Vec3 P = face_gear::FaceGearSurface<double>::turned(gear.p, x[4]),
-               n = face_gear::FaceGearSurface<double>::turned(gear.n, x[4]);
+    const Vec3 P = turned(gear.p, x[4]), n = turned(gear.n, x[4]);
     const double B_1 = s * (theta_01_ + x[2]) + kappa_1_ * (x[3] - f_.L0) + phi_1;
     const Vec3 b(0, 1, 0), e = std::cos(B_1) * d_ + std::sin(B_1) * b, t = -std::sin(B_1) * d_ + std::cos(B_1) * b;
     const Vec3 axis_point =

@@ -46,8 +46,7 @@ std::pair<S, S> misfit(const face_gear::FaceGearSurface<S>& f, const contact::Pi
   const auto gear = f.flank(s, path.theta(theta_1), path.B);
   const auto mate = pinion.flank(s, theta_1, path.section(theta_1, pinion.T), path.phi_1(theta_1));
   const S turn = path.phi_2(theta_1);
-  const Vec3T<S> dp = face_gear::FaceGearSurface<S>::turned(gear.p, turn) - mate.p,
-                 dn = face_gear::FaceGearSurface<S>::turned(gear.n, turn) - mate.n;
+  const Vec3T<S> dp = turned(gear.p, turn) - mate.p, dn = turned(gear.n, turn) - mate.n;
   const Vec3T<S> on_path = path.point(theta_1) - mate.p;
   using std::sqrt;
   return {S(sqrt(S(dp.dot(dp))) + sqrt(S(on_path.dot(on_path)))), S(sqrt(S(dn.dot(dn))))};
@@ -308,8 +307,7 @@ TEST(MeasuredFlank, OrderOfRowsAndToothDoNotMatter) {
   std::vector<double> deviation;
   for (int r = 8; r >= 0; --r)
     for (int c = 0; c < 11; ++c) {
-      points.push_back(
-          face_gear::FaceGearSurface<double>::turned(exact->points[exact->index(r, c)], exact->surface.pitch));
+      points.push_back(turned(exact->points[exact->index(r, c)], exact->surface.pitch));
       deviation.push_back(1e-3 * r + 1e-4 * c);
     }
   const auto measured = contact::measured_flank(gear, 0, -1, 9, 11, points, deviation);
@@ -430,7 +428,7 @@ TEST(LineContact, EveryPlaceIsTouchedAtItsOwnTurn) {
           const Vec3 place = f.flank(side, theta, B).p;
           const double phi = f.flank_phi(side, theta, B);
           const auto gap_at = [&](double turn) {  // of the pinion that stands where the ratio wants it
-            return pinion.gap(side, pinion.place(contact::GearTurn(turn * pinion.ratio)(place)), turn);
+            return pinion.gap(side, pinion.place(Turn(turn * pinion.ratio)(place)), turn);
           };
           EXPECT_NEAR(gap_at(phi), 0, 1e-9) << name << side << theta;
           EXPECT_GT(std::abs(gap_at(phi + 0.02)), 1e-6) << name << side << theta;

@@ -86,8 +86,7 @@ TEST_P(Envelope, FilletAndRootAreWhereMaterialBegins) {
       EXPECT_NEAR(to - from, f.pitch - 2 * f.i * f.shaper.psi_c, 1e-12);
       for (const double u : {0.05, 0.5, 0.95}) {
         const double turn = from + u * (to - from) - own;
-        expect_on_surface(sweep, face_gear::FaceGearSurface<double>::turned(root.p, turn),
-                          face_gear::FaceGearSurface<double>::turned(root.n, turn), f.L_p, step,
+        expect_on_surface(sweep, turned(root.p, turn), turned(root.n, turn), f.L_p, step,
                           fmt::format("root r {} u {}", r, u));
       }
       const auto height = face_gear::root_height(f, std::hypot(root.p.x(), root.p.y()));
@@ -183,7 +182,7 @@ TEST(EnvelopeLimits, SeesPlantedErrors) {
   const auto root = f.root_meridian(138.0);
   const double turn =
       0.5 * (f.root_edge_azimuth(1, 138.0) + f.root_edge_azimuth(-1, 138.0)) - std::atan2(root.p.y(), root.p.x());
-  const Vec3 on_root = face_gear::FaceGearSurface<double>::turned(root.p, turn);
+  const Vec3 on_root = turned(root.p, turn);
   EXPECT_NEAR(good.least_clearance(flank.p), 0, 1e-11);
   EXPECT_NEAR(thin.least_clearance(flank.p), -0.0005, 1e-9);
   EXPECT_NEAR(good.least_clearance(on_root), 0, 1e-11);

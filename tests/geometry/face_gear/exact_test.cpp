@@ -103,7 +103,7 @@ TEST(FaceGearExact, ParallelSurfaceIsARotation) {
     for (const double share : {-0.1, 0.1, 0.37}) {
       const F50 delta = F50(share) * F50(g.c.module_mm);
       const auto shifted = f.flank(s, F50(th - delta * f.shaper.cos_bb / f.shaper.r_b), B);
-      const Vec turned = face_gear::FaceGearSurface<F50>::turned(shifted.p, F50(F50(s) * delta / f.M2));
+      const Vec turned = toothpath::turned(shifted.p, F50(F50(s) * delta / f.M2));
       EXPECT_LT(size(Vec(turned - q.p - q.n * delta)), 1e-44 * g.near.L_p);
     }
   });
@@ -134,8 +134,7 @@ TEST(FaceGearExact, ReferenceSectionTurnsTheGear) {
     const F50 D = F50(7.25) * F50(g.c.module_mm);
     moved.L0 += D;
     const auto p = g.f.flank(s, th, B), q = moved.flank(s, th, B);
-    EXPECT_LT(size(Vec(q.p - face_gear::FaceGearSurface<F50>::turned(p.p, F50(-g.f.i * g.f.shaper.kappa * D)))),
-              1e-44 * g.near.L_p);
+    EXPECT_LT(size(Vec(q.p - toothpath::turned(p.p, F50(-g.f.i * g.f.shaper.kappa * D)))), 1e-44 * g.near.L_p);
   });
 }
 
@@ -221,8 +220,8 @@ TEST(FaceGearExact, PatchesJoinSmoothly) {
         const auto end = f.fillet(at.side, f.shaper.A_e, Z);
         auto root = f.root_meridian(Z);
         const F50 turn = atan2(end.p[1], end.p[0]) - atan2(root.p[1], root.p[0]);
-        EXPECT_LT(size(Vec(face_gear::FaceGearSurface<F50>::turned(root.p, turn) - end.p)), 1e-42 * g.near.L_p);
-        EXPECT_LT(size(Vec(face_gear::FaceGearSurface<F50>::turned(root.n, turn) - end.n)), 1e-42);
+        EXPECT_LT(size(Vec(toothpath::turned(root.p, turn) - end.p)), 1e-42 * g.near.L_p);
+        EXPECT_LT(size(Vec(toothpath::turned(root.n, turn) - end.n)), 1e-42);
         if (g.c.gamma_deg == 90) {
           EXPECT_LT(std::abs(as_double(end.p[2] + f.shaper.r_a)), 1e-44 * g.near.L_p);
           EXPECT_NEAR(as_double(end.n[2]), 1, 1e-15);
@@ -301,7 +300,7 @@ TEST(FaceGearExact, ManyTeethMakeARack) {
       EXPECT_NEAR(as_double(H.el * F50(teeth)), -1.0990, 6e-5);
       EXPECT_LT(std::abs(as_double(H.ll)), 1e-6);
       const Vec rack = f.t(f.shaper.alpha_t) * f.shaper.cos_bb - f.a() * f.shaper.sin_bb;
-      const Vec n = face_gear::FaceGearSurface<F50>::turned(q.n, F50(f.i * f.flank_phi(1, th, q.B)));
+      const Vec n = toothpath::turned(q.n, F50(f.i * f.flank_phi(1, th, q.B)));
       EXPECT_LT(size(Vec(n - rack)), 1e-6);
     }
   }

@@ -132,7 +132,7 @@ TEST_P(CorrectedSheet, DisplacesTheGridByMinusTheDeviation) {
     const auto q =
         sheet.at(p.side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus, p.theta, p.B);
     ASSERT_TRUE(q);
-    const Vec3 at = p.side > 0 ? q->p : face_gear::FaceGearSurface<double>::turned(q->p, -nominal.pitch());
+    const Vec3 at = p.side > 0 ? q->p : turned(q->p, -nominal.pitch());
     const double x = double(p.row) / 4, y = double(p.column) / 8, wanted = p.side > 0 ? -rough(x, y) : rough(y, x);
     EXPECT_NEAR((at - p.p).dot(p.n), wanted,
                 gear.rings()[0].correction->side(p.side).residual().residual_max_mm + 1e-9);
@@ -211,7 +211,7 @@ TEST_P(CorrectedSheet, TipEdgeLiesOnTheTipSurface) {
                    .at(side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus, tip->at.theta,
                        tip->at.B)
                    ->p;
-      if (side < 0) p = face_gear::FaceGearSurface<double>::turned(p, -nominal.pitch());
+      if (side < 0) p = turned(p, -nominal.pitch());
       EXPECT_NEAR(std::hypot(p.x(), p.y()), r, 1e-9);
       EXPECT_NEAR(p.z(), gear.rings()[0].surface.z_tip(r), 1e-9);
       EXPECT_NEAR(std::remainder(std::atan2(p.y(), p.x()) - tip->azimuth, 2 * kPi), 0, 1e-12);

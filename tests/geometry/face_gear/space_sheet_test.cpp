@@ -97,8 +97,7 @@ TEST_P(Sheet, CurvatureOfFlanksAndFillets) {
       const auto H = flank ? f.flank_shape(side, at.u, at.v) : f.fillet_shape(side, at.u, at.v);
       const auto basis = flank ? f.flank_basis(side, at.u, at.v) : f.fillet_basis(side, at.u, at.v);
       const double turn = side > 0 ? 0 : f.pitch;
-      const Vec3 e = face_gear::FaceGearSurface<double>::turned(basis.e, turn),
-                 l = face_gear::FaceGearSurface<double>::turned(basis.l, turn);
+      const Vec3 e = turned(basis.e, turn), l = turned(basis.l, turn);
       for (const double angle : {0.0, 0.7, 1.6, 2.5}) {
         const double c = std::cos(angle), s = std::sin(angle);
         const double expected = c * c * H.ee + 2 * c * s * H.el + s * s * H.ll;

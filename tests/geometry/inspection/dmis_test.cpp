@@ -112,8 +112,7 @@ TEST(InspectionDmis, MovesStayInTheSpaceBesideTheFlank) {
       const Vec3 at = over + (start - over) * (k / 20.0);
       if (at.z() > f.z_tip(std::hypot(at.x(), at.y()))) continue;
       const auto near = face_gear::flank_distance(f, side, at);
-      const auto far =
-          face_gear::flank_distance(f, -side, face_gear::FaceGearSurface<double>::turned(at, -side * gear.pitch()));
+      const auto far = face_gear::flank_distance(f, -side, turned(at, -side * gear.pitch()));
       ASSERT_TRUE(near && far);
       EXPECT_GT(near->distance, 0) << s;
       EXPECT_GT(far->distance, 0) << s;

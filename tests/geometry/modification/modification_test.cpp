@@ -208,8 +208,7 @@ TEST(ModifiedFlank, ValueNormalAndCurvatureMatchFiftyDigits) {
           sheet.at(side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus, theta, B);
       ASSERT_TRUE(q);
       const double turn = side > 0 ? 0 : -gear.pitch();
-      using Turn = face_gear::FaceGearSurface<double>;
-      const Vec3 at = Turn::turned(q->p, turn), out = Turn::turned(q->n, turn);
+      const Vec3 at = turned(q->p, turn), out = turned(q->n, turn);
       const auto near = [](const Vec3T<F50>& v) { return Vec3(double(v[0]), double(v[1]), double(v[2])); };
       if (near(n).dot(out) < 0) n = -n;
       point = std::max(point, (at - near(x)).norm());

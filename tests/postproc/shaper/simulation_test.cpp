@@ -146,9 +146,7 @@ TEST(ShaperSimulation, ThreeStrokesTouchTheRightFlank) {
     // touch it.
     if (std::abs(s.surface.flank_phi(p.side, p.theta, p.B)) < 0.05) continue;
     const auto mirrored_side = s.surface.flank(-p.side, p.theta, -p.B);
-    const double other =
-        1000 * swept_distance(s.surface, three,
-                              face_gear::FaceGearSurface<double>::turned(mirrored_side.p, s.surface.pitch * tooth));
+    const double other = 1000 * swept_distance(s.surface, three, turned(mirrored_side.p, s.surface.pitch * tooth));
     EXPECT_GT(std::abs(other), 20);
     // The wrong sense takes the cutter somewhere else.
     auto wrong = three;
