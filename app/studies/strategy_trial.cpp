@@ -16,7 +16,7 @@ LeftOnFlanks left_on_flanks(const std::vector<proof::SurfaceGrid>& surface) {
   LeftOnFlanks left;
   double sum = 0;
   for (const auto& grid : surface) {
-    if (proof::region_of(grid.patch) != path::Region::flank || grid.excess_um.empty()) continue;
+    if (path::region_of(grid.patch) != path::Region::flank || grid.excess_um.empty()) continue;
     for (std::size_t k = 0; k < grid.points.size(); ++k) {
       if (!grid.reachable[k]) continue;
       const double excess = double(grid.excess_um.back()[k]) / 1000;

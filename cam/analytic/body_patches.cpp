@@ -9,6 +9,8 @@
 namespace toothpath::analytic {
 namespace {
 
+using tooth_space::Piece;
+
 constexpr double kStands = 1e-9;     // mm: a place this far beyond a border still counts
 constexpr double kPlainSag = 0.005;  // mm: cells whose bound is larger are looked at more closely
 constexpr int kClosest = 3;          // halvings each way for that
@@ -24,8 +26,7 @@ Vec2 extent(const BodyQuad& q) {
   return high - low;
 }
 
-bool is_end(BodySurface s) { return s == BodySurface::inner_end || s == BodySurface::outer_end; }
-bool is_round(BodySurface s) { return is_end(s) || s == BodySurface::floor; }
+bool is_round(const BodySurface& s) { return s.end() || s.piece == Piece::groove; }
 
 /// Radius, middle azimuth and width of the arc that a quad of an end or of the floor spans.
 struct Arc {
@@ -43,34 +44,11 @@ Arc arc_of(const BodyQuad& q) {
 
 }  // namespace
 
-const char* to_string(BodySurface surface) {
-  switch (surface) {
-    case BodySurface::sheet: return "tooth";
-    case BodySurface::land: return "tip";
-    case BodySurface::inner_end:
-    case BodySurface::outer_end: return "end";
-    case BodySurface::floor: return "groove";
-  }
-  return "";
-}
-
 BodyPatches::BodyPatches(const face_gear::FaceGearParameters& gear, const face_gear::SpaceSheet& space, BodyRing ring,
                          std::size_t cells)
     : space_(space), bounds_(gear, space), ring_(std::move(ring)), cells_(cells), boxes_(cells) {}
 
-const char* BodyPatches::name(std::size_t index) const {
-  const Cell& cell = cells_[index];
-  return cell.surface == BodySurface::sheet ? to_string(blocks_[cell.block].piece) : to_string(cell.surface);
-}
-
-bool BodyPatches::on_flank(std::size_t index) const {
-  const Cell& cell = cells_[index];
-  if (cell.surface != BodySurface::sheet) return false;
-  const auto piece = blocks_[cell.block].piece;
-  return piece == face_gear::SpacePiece::flank_plus || piece == face_gear::SpacePiece::flank_minus;
-}
-
-void BodyPatches::add_block(face_gear::SpacePiece piece, const std::vector<SheetCell>& cells) {
+void BodyPatches::add_block(tooth_space::Piece piece, const std::vector<SheetCell>& cells) {
   if (cells.empty()) return;
   Block block;
   block.piece = piece;
@@ -102,6 +80,7 @@ void BodyPatches::add_block(face_gear::SpacePiece piece, const std::vector<Sheet
   blocks_.push_back(block);
   for (const auto& c : cells) {
     Cell cell;
+    cell.surface.piece = piece;
     cell.block = std::uint32_t(blocks_.size() - 1);
     for (std::size_t k = 0; k < 4; ++k) {
       cell.quad.at[k] = block.frame.ab(c.uv[k]);
@@ -133,7 +112,7 @@ void BodyPatches::add(std::size_t index, BodySurface surface, const Vec2& low, c
                       const std::array<Vec3, 4>& found_by) {
   Cell cell;
   cell.surface = surface;
-  if (surface == BodySurface::land) {
+  if (surface.piece == Piece::tip) {
     Block block;
     block.bend = land_bend(low.y(), high.y());
     cell.block = std::uint32_t(blocks_.size());
@@ -189,17 +168,17 @@ double BodyPatches::cell_sag(std::size_t index) const {
 }
 
 BodyQuad BodyPatches::made(const Cell& cell, const std::array<Vec2, 4>& at) const {
-  if (is_end(cell.surface)) return end_quad(cell, at);
+  if (cell.surface.end()) return end_quad(cell, at);
   BodyQuad q;
   q.at = at;
   for (std::size_t k = 0; k < 4; ++k) {
     const Vec2& x = at[k];
-    switch (cell.surface) {
-      case BodySurface::land:
+    switch (cell.surface.piece) {
+      case Piece::tip:
         q.corner[k] = land(x.x(), x.y());
         q.stands[k] = true;
         break;
-      case BodySurface::floor:
+      case Piece::groove:
         q.corner[k] = on_cylinder(x.y(), x.x(), ring_.floor_mm);
         q.stands[k] = true;
         break;
@@ -218,7 +197,7 @@ BodyQuad BodyPatches::made(const Cell& cell, const std::array<Vec2, 4>& at) cons
 /// The straight line between the ends of a stretch of the border, raised so that the stretch lies below it, and lowered
 /// where it is the lower side of a quad; a stretch that leaves its azimuths is held by a rectangle.
 BodyQuad BodyPatches::end_quad(const Cell& cell, const std::array<Vec2, 4>& at) const {
-  const std::size_t n = cell.surface == BodySurface::outer_end ? 1 : 0;
+  const std::size_t n = cell.surface.outer ? 1 : 0;
   const double r = n == 1 ? ring_.r_out : ring_.r_in, sag = ring_.border_sag[n], z_tip = space_.surface().z_tip(r);
   auto s = border_stretch(ring_.border[n], at[0].x(), at[1].x());
   const bool turns_back =
@@ -244,7 +223,7 @@ BodyQuad BodyPatches::end_quad(const Cell& cell, const std::array<Vec2, 4>& at) 
 Vec2 BodyPatches::sides(const Cell& cell, const BodyQuad& q) const {
   const auto& c = q.corner;
   Vec2 out(std::max((c[1] - c[0]).norm(), (c[2] - c[3]).norm()), std::max((c[3] - c[0]).norm(), (c[2] - c[1]).norm()));
-  if (is_end(cell.surface))
+  if (cell.surface.end())
     out.y() = std::min(
         out.y(), (q.at[2].y() - q.at[0].y()) * (std::max(c[2].z(), c[3].z()) - std::min(ring_.base_mm, c[0].z())));
   return out;
@@ -259,7 +238,7 @@ Vec2 BodyPatches::bends(const Cell& cell, const BodyQuad& q) const {
 
 double BodyPatches::stays(std::size_t index, const BodyQuad& q) const {
   const Cell& cell = cells_[index];
-  if (!is_end(cell.surface)) return 0;
+  if (!cell.surface.end()) return 0;
   const double height = std::max((q.corner[3] - q.corner[0]).norm(), (q.corner[2] - q.corner[1]).norm());
   return std::max(0.0, height - sides(cell, q).y());
 }
@@ -284,7 +263,7 @@ std::array<BodyQuad, 2> BodyPatches::halved(std::size_t index, const BodyQuad& q
     old = {{{0, 1, -1, -1}, {-1, -1, 2, 3}}};
   }
   const Cell& cell = cells_[index];
-  if (is_end(cell.surface)) return {end_quad(cell, at[0]), end_quad(cell, at[1])};
+  if (cell.surface.end()) return {end_quad(cell, at[0]), end_quad(cell, at[1])};
   std::array<BodyQuad, 2> out;
   out[0].at = at[0];
   out[1].at = at[1];
@@ -304,7 +283,7 @@ std::array<BodyQuad, 2> BodyPatches::halved(std::size_t index, const BodyQuad& q
 BodyHull BodyPatches::outline(std::size_t index, const BodyQuad& q) const {
   BodyHull hull;
   const Cell& cell = cells_[index];
-  if (cell.surface != BodySurface::sheet || (q.stands[0] && q.stands[1] && q.stands[2] && q.stands[3])) {
+  if (!cell.surface.sheet() || (q.stands[0] && q.stands[1] && q.stands[2] && q.stands[3])) {
     for (std::size_t k = 0; k < 4; ++k) hull.corner[hull.count++] = {q.corner[k], q.at[k], q.stands[k]};
     return hull;
   }
@@ -340,19 +319,17 @@ double BodyPatches::sag(std::size_t index, const BodyQuad& q) const {
 
 std::optional<Vec3> BodyPatches::settled(std::size_t index, const Vec2& at) const {
   const Cell& cell = cells_[index];
-  switch (cell.surface) {
-    case BodySurface::land: return land(at.x(), at.y());
-    case BodySurface::floor: return on_cylinder(at.y(), at.x(), ring_.floor_mm);
-    case BodySurface::inner_end:
-    case BodySurface::outer_end: {
-      const std::size_t n = cell.surface == BodySurface::outer_end ? 1 : 0;
+  switch (cell.surface.piece) {
+    case Piece::tip: return land(at.x(), at.y());
+    case Piece::groove: return on_cylinder(at.y(), at.x(), ring_.floor_mm);
+    case Piece::end: {
+      const std::size_t n = cell.surface.outer ? 1 : 0;
       const Vec2 top = border_place(ring_.border[n], at.x());
       return on_cylinder(n == 1 ? ring_.r_out : ring_.r_in, top.x(),
                          ring_.base_mm + at.y() * (top.y() - ring_.base_mm));
     }
-    case BodySurface::sheet: break;
+    default: return settled_sheet(blocks_[cell.block], blocks_[cell.block].frame.uv(at));
   }
-  return settled_sheet(blocks_[cell.block], blocks_[cell.block].frame.uv(at));
 }
 
 std::optional<Vec3> BodyPatches::settled_sheet(const Block& block, Vec2 uv) const {
@@ -380,13 +357,12 @@ std::optional<Vec3> BodyPatches::settled_sheet(const Block& block, Vec2 uv) cons
   }
   if (!q || lacks(q->p).cwiseAbs().maxCoeff() > 1e-7) return {};
   const auto& w = space_.surface().shaper;
-  const bool flank = piece == face_gear::SpacePiece::flank_plus || piece == face_gear::SpacePiece::flank_minus;
-  const double low = flank                                  ? -INFINITY
-                     : piece == face_gear::SpacePiece::root ? 0
-                                                            : w.A_t,
-               high = flank                                  ? w.theta_t
-                      : piece == face_gear::SpacePiece::root ? 1
-                                                             : w.A_e;
+  const double low = is_flank(piece)                     ? -INFINITY
+                     : piece == tooth_space::Piece::root ? 0
+                                                         : w.A_t,
+               high = is_flank(piece)                     ? w.theta_t
+                      : piece == tooth_space::Piece::root ? 1
+                                                          : w.A_e;
   if (uv.x() < low - kStands || uv.x() > high + kStands) return {};
   return q->p;
 }

@@ -17,9 +17,14 @@
 
 namespace toothpath::analytic {
 
-/// What a cell is a piece of.
-enum class BodySurface : std::uint8_t { sheet, land, inner_end, outer_end, floor };
-[[nodiscard]] const char* to_string(BodySurface surface);
+/// What a cell is a piece of: one of the five of a tooth space (the sheet), a top land, an end of the ring, or the
+/// floor of the groove.
+struct BodySurface {
+  tooth_space::Piece piece = tooth_space::Piece::root;
+  bool outer = false;  ///< of an end
+  [[nodiscard]] bool sheet() const { return int(piece) < tooth_space::kPieces; }
+  [[nodiscard]] bool end() const { return piece == tooth_space::Piece::end; }
+};
 
 /// A quad of a cell. Parameters: sheet: coordinates of the frame of its block; land: (share from the minus to the plus
 /// edge, radius); ends: (index on the border, share of the height); floor: (azimuth, radius). Corners run around the
@@ -70,7 +75,7 @@ class BodyPatches {
               std::size_t cells);
 
   /// Cells of one piece that lie beside each other and share the bound of their second derivatives.
-  void add_block(face_gear::SpacePiece piece, const std::vector<SheetCell>& cells);
+  void add_block(tooth_space::Piece piece, const std::vector<SheetCell>& cells);
   /// A cell of another surface, from the low and high ends of its parameters. `found_by`: the corners by which a search
   /// finds it, along both parameters: (low, low), (high, low), (low, high), (high, high).
   void add(std::size_t index, BodySurface surface, const Vec2& low, const Vec2& high,
@@ -82,9 +87,7 @@ class BodyPatches {
   [[nodiscard]] const BodyBox& box(std::size_t cell) const { return boxes_[cell]; }
   /// How far any piece of the surface may lie from the corners by which its cell is found.
   [[nodiscard]] double search_margin() const { return search_margin_; }
-  [[nodiscard]] BodySurface surface(std::size_t cell) const { return cells_[cell].surface; }
-  [[nodiscard]] const char* name(std::size_t cell) const;
-  [[nodiscard]] bool on_flank(std::size_t cell) const;
+  [[nodiscard]] const BodySurface& surface(std::size_t cell) const { return cells_[cell].surface; }
 
   /// Parameters of the piece, of a place of a cell of the sheet.
   [[nodiscard]] Vec2 parameters(std::size_t cell, const Vec2& at) const {
@@ -111,12 +114,12 @@ class BodyPatches {
 
  private:
   struct Block {
-    face_gear::SpacePiece piece = face_gear::SpacePiece::root;
+    tooth_space::Piece piece = tooth_space::Piece::tip;
     PatchFrame frame;
     PatchBend bend;
   };
   struct Cell {
-    BodySurface surface = BodySurface::sheet;
+    BodySurface surface;
     std::uint32_t block = 0;
     double sag = 0;
     BodyQuad quad;

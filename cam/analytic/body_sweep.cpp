@@ -298,7 +298,7 @@ class Sweep {
     out.zone = best->zone;
     out.place = best->at;
     out.height_mm = best->height;
-    out.patch = part_.patches(best->zone).name(best->cell);
+    out.patch = to_string(part_.patches(best->zone).surface(best->cell).piece);
     return out;
   }
 
@@ -322,7 +322,7 @@ class Sweep {
     std::vector<Near> order;
     for (const NearCell& near : cells) {
       const auto& patches = part_.patches(near.target.zone);
-      if (o_.flanks_only && !patches.on_flank(near.target.cell)) continue;
+      if (o_.flanks_only && !is_flank(patches.surface(near.target.cell).piece)) continue;
       const BodyBox& box = patches.box(near.target.cell);
       const double away = 0.5 * near.step.norm() + near.strays + box.radius;
       if (in_T.beyond(near.middle, (enough + away + body_.round) * kRoundOff)) continue;

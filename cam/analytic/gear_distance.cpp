@@ -159,7 +159,7 @@ class GearDistance::Impl::Question {
     std::size_t quad = 0;
   };
   struct Seeds {
-    std::array<Seed, 2 * face_gear::kSpacePieces * kBands> of_band;
+    std::array<Seed, 2 * tooth_space::kPieces * kBands> of_band;
     double d_mesh = INFINITY;  ///< to whole quads
     double search = 0, slack = 0;
   };
@@ -235,17 +235,17 @@ class GearDistance::Impl::Question {
   }
 
   /// Does a foot lie on its piece, not on the continuation beyond its borders?
-  [[nodiscard]] static bool on_piece(const GearRing& ring, face_gear::SpacePiece piece, double u) {
+  [[nodiscard]] static bool on_piece(const GearRing& ring, tooth_space::Piece piece, double u) {
     const auto& w = ring.space.surface().shaper;
     const double slack = ring.space.ring().displaced() ? kDisplacedBorder : kBorder;
     switch (piece) {
-      case face_gear::SpacePiece::flank_plus:
-      case face_gear::SpacePiece::flank_minus: return u <= w.theta_t + slack;
-      case face_gear::SpacePiece::root: return u >= -slack && u <= 1 + slack;
-      case face_gear::SpacePiece::fillet_plus:
-      case face_gear::SpacePiece::fillet_minus: return u >= w.A_t - slack && u <= w.A_e + slack;
+      case tooth_space::Piece::flank_plus:
+      case tooth_space::Piece::flank_minus: return u <= w.theta_t + slack;
+      case tooth_space::Piece::root: return u >= -slack && u <= 1 + slack;
+      case tooth_space::Piece::fillet_plus:
+      case tooth_space::Piece::fillet_minus: return u >= w.A_t - slack && u <= w.A_e + slack;
+      default: return false;
     }
-    return false;
   }
 
   void edges(const View& at) {

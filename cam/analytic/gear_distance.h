@@ -65,7 +65,7 @@ class GearDistance {
     Vec3 centre = Vec3::Zero();
     double radius = 0;  ///< of the sphere about `centre` that holds the cell and its sag
     int zone = 0;
-    face_gear::SpacePiece piece = face_gear::SpacePiece::root;
+    tooth_space::Piece piece = tooth_space::Piece::root;
     double u = 0, v = 0;
     bool sheet = true;  ///< false: a piece of a top land, which has no analytic patch; for bodies only
     std::uint32_t first_triangle = 0, triangles = 0;  ///< what of the cell stands for material, in `triangles(zone)`

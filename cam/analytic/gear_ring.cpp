@@ -154,7 +154,7 @@ class Maker {
     for (const int side : {1, -1}) {
       const auto c = space_.tip(side, r);
       if (!c) continue;
-      const auto piece = side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus;
+      const auto piece = tooth_space::flank_of(side);
       const auto q = space_.point(piece, c->at.theta, c->at.B);
       if (!q) continue;
       const Vec2 corner(std::atan2(q->p.y(), q->p.x()), z_tip);
@@ -174,7 +174,7 @@ class Maker {
       const double z_tip = space_.surface().z_tip(r), pitch = gear_.pitch();
       last_plus = space_.tip(1, r, start_of(last_plus));
       last_minus = space_.tip(-1, r, start_of(last_minus));
-      const auto root = space_.point(face_gear::SpacePiece::root, 0.5,
+      const auto root = space_.point(tooth_space::Piece::root, 0.5,
                                      std::sqrt(r * r - space_.surface().E * space_.surface().E) / space_.surface().Sg);
       R.table_r.push_back(r);
       R.mid.push_back(std::atan2(root->p.y(), root->p.x()));
@@ -220,7 +220,9 @@ class Maker {
           cell.corner[std::size_t(corner)] = b + (a - b) * ((part + corner % 2) / double(kLandParts));
         }
         cell.centre = 0.25 * (cell.corner[0] + cell.corner[1] + cell.corner[2] + cell.corner[3]);
-        others_.push_back({R.cells.size(), BodySurface::land, Vec2(part / double(kLandParts), R.table_r[k]),
+        others_.push_back({R.cells.size(),
+                           {tooth_space::Piece::tip},
+                           Vec2(part / double(kLandParts), R.table_r[k]),
                            Vec2((part + 1) / double(kLandParts), R.table_r[k + kLandStep])});
         add_cell(cell);
       }
@@ -247,8 +249,7 @@ class Maker {
   void end_cells() {
     for (const bool outer : {false, true})
       for (const auto& quad : end_face_quads(end_face(outer), outer ? R.end_out : R.end_in))
-        add_flat(quad.corner, outer ? BodySurface::outer_end : BodySurface::inner_end, {quad.from, quad.low},
-                 {quad.to, quad.high});
+        add_flat(quad.corner, {tooth_space::Piece::end, outer}, {quad.from, quad.low}, {quad.to, quad.high});
   }
 
   void floor_cells() {
@@ -263,7 +264,7 @@ class Maker {
       for (int q = 0; q < rows; ++q) {
         const double a = from + pitch * k / kFloorStrips, b = from + pitch * (k + 1) / kFloorStrips;
         const double r0 = R.r_out + (next - R.r_out) * q / rows, r1 = R.r_out + (next - R.r_out) * (q + 1) / rows;
-        add_flat({at(r0, a), at(r0, b), at(r1, a), at(r1, b)}, BodySurface::floor, {a, r0}, {b, r1});
+        add_flat({at(r0, a), at(r0, b), at(r1, a), at(r1, b)}, {tooth_space::Piece::groove}, {a, r0}, {b, r1});
       }
   }
 
@@ -302,7 +303,7 @@ class Maker {
     for (std::size_t n = 0; n < station_.size(); ++n) {
       const auto [j, k] = station_[n];
       const auto piece = R.cells[n].piece;
-      const bool fillet = piece == face_gear::SpacePiece::fillet_plus || piece == face_gear::SpacePiece::fillet_minus;
+      const bool fillet = is_fillet(piece);
       BodyPatches::SheetCell cell;
       cell.index = n;
       const std::array<const face_gear::OffsetSheet::Node*, 4> nodes{&st[j].nodes[k], &st[j].nodes[k + 1],
@@ -313,7 +314,7 @@ class Maker {
       }
       blocks[{(j - first_row) / (fillet ? 8 : 4), std::size_t(piece), fillet ? k : k / 4}].push_back(cell);
     }
-    for (const auto& [key, cells] : blocks) R.patches->add_block(face_gear::SpacePiece(key[1]), cells);
+    for (const auto& [key, cells] : blocks) R.patches->add_block(tooth_space::Piece(key[1]), cells);
     for (const auto& other : others_)
       R.patches->add(other.index, other.surface, other.low, other.high, R.cells[other.index].corner);
   }
@@ -328,7 +329,7 @@ class Maker {
     std::vector<clearance::Facet> others;
     for (std::size_t n = 0; n < R.cells.size(); ++n) {
       if (R.cells[n].sheet) add_quads(n, R.patches->quad(n), kFacetHalvings, sheet);
-      else if (R.patches->surface(n) != BodySurface::floor) add_other(n, others);
+      else if (R.patches->surface(n).piece != tooth_space::Piece::groove) add_other(n, others);
     }
     R.whole_facets = clearance::FacetTree(sheet[0]);
     R.border_facets = clearance::FacetTree(sheet[1]);

@@ -24,7 +24,7 @@ struct EdgeSegment {
 
 /// A quad of the sheet that its two facets leave by no more than `GearRing::facet_sag`: where Newton starts.
 struct SheetQuad {
-  face_gear::SpacePiece piece = face_gear::SpacePiece::root;
+  tooth_space::Piece piece = tooth_space::Piece::root;
   std::uint8_t band = 0;  ///< quarter of the piece across the space
   bool border = false;    ///< partly beyond an end of the ring or the tip
   double u = 0, v = 0;    ///< its middle

@@ -77,21 +77,21 @@ struct PatchBounds::Kernels {
   face_gear::FaceGearSurface<Second> f2;
   face_gear::FaceGearSurface<First> f1;
 
-  [[nodiscard]] Jet over(const face_gear::SpaceSheet& space, face_gear::SpacePiece piece, const PatchFrame& frame,
+  [[nodiscard]] Jet over(const face_gear::SpaceSheet& space, tooth_space::Piece piece, const PatchFrame& frame,
                          double half_a, double half_b) const {
     const Interval a(-half_a, half_a), b(-half_b, half_b);
     const Vec2 &o = frame.origin, &x = frame.along_a, &y = frame.along_b;
     const Second u = variable(Interval(o[0]) + a * x[0] + b * y[0], x[0], y[0]),
                  v = variable(Interval(o[1]) + a * x[1] + b * y[1], x[1], y[1]);
-    const int s = piece == face_gear::SpacePiece::flank_plus || piece == face_gear::SpacePiece::fillet_plus ? 1 : -1;
-    const bool moved = !space.field(s).none();
-    if (piece == face_gear::SpacePiece::fillet_plus || piece == face_gear::SpacePiece::fillet_minus) {
+    const int s = side_of(piece);
+    const bool moved = s != 0 && !space.field(s).none();
+    if (is_fillet(piece)) {
       Jet jet = fillet(s, u, v);
       if (moved) add(jet, fillet_offset(*space.blend(s), s, u, v));
       return jet;
     }
     Vec3T<Second> p;
-    if (piece == face_gear::SpacePiece::root) {
+    if (piece == tooth_space::Piece::root) {
       const Second twist = atan2(Second(-f2.E * f2.Cg), Second(f2.Sg * v)) - f2.shaper.kappa * (v - f2.L0);
       const Second plus = -f2.i * (twist - f2.shaper.psi_c), minus = f2.pitch - f2.i * (twist + f2.shaper.psi_c);
       p = turned(f2.root_meridian(v).p, Second(plus + u * (minus - plus)));
@@ -101,7 +101,7 @@ struct PatchBounds::Kernels {
     }
     Jet jet;
     add(jet, p);
-    if (moved && piece != face_gear::SpacePiece::root) add(jet, flank_offset(space.field(s), s, u, v));
+    if (moved) add(jet, flank_offset(space.field(s), s, u, v));
     return jet;
   }
 
@@ -176,7 +176,7 @@ PatchBounds::PatchBounds(const face_gear::FaceGearParameters& gear, const face_g
 PatchBounds::~PatchBounds() = default;
 PatchBounds::PatchBounds(PatchBounds&&) noexcept = default;
 
-std::optional<PatchBend> PatchBounds::over(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a,
+std::optional<PatchBend> PatchBounds::over(tooth_space::Piece piece, const PatchFrame& frame, double half_a,
                                            double half_b) const {
   return PatchBend::of(kernels_->over(space_, piece, frame, half_a, half_b).second);
 }
@@ -214,8 +214,8 @@ std::optional<CurveBend> PatchBounds::tip_azimuth(int side, const face_gear::Tip
   return {};
 }
 
-std::optional<VectorBound> PatchBounds::bend_at_radius(face_gear::SpacePiece piece, const PatchFrame& frame,
-                                                       double half_a, double half_b) const {
+std::optional<VectorBound> PatchBounds::bend_at_radius(tooth_space::Piece piece, const PatchFrame& frame, double half_a,
+                                                       double half_b) const {
   const Jet p = kernels_->over(space_, piece, frame, half_a, half_b);
   const Interval &x = p.place[0], &y = p.place[1], r = sqrt(square(x) + square(y));
   const auto slope = [&](std::size_t n) { return (x * p.first[n][0] + y * p.first[n][1]) / r; };

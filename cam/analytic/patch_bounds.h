@@ -63,7 +63,7 @@ class PatchBounds {
   PatchBounds(PatchBounds&&) noexcept;
 
   /// Over the box |a| <= half_a, |b| <= half_b. Nothing where no bound is found. Proven, of displaced rings, too.
-  [[nodiscard]] std::optional<PatchBend> over(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a,
+  [[nodiscard]] std::optional<PatchBend> over(tooth_space::Piece piece, const PatchFrame& frame, double half_a,
                                               double half_b) const;
 
   /// The azimuth of the tip edge of `side` as a function of the radius, between two places of it. Proven: the edge
@@ -73,7 +73,7 @@ class PatchBounds {
 
   /// Second derivative by a of the curve in which a piece meets the cylinder through the origin of the frame, for |a|
   /// <= half_a; the curve is followed within |b| <= half_b. Proven like the others.
-  [[nodiscard]] std::optional<VectorBound> bend_at_radius(face_gear::SpacePiece piece, const PatchFrame& frame,
+  [[nodiscard]] std::optional<VectorBound> bend_at_radius(tooth_space::Piece piece, const PatchFrame& frame,
                                                           double half_a, double half_b) const;
 
   /// Second derivative of the height of the tip surface by the radius.

@@ -10,7 +10,7 @@ namespace toothpath::analytic {
 
 /// A place of the sheet on the cylinder of an end of the ring.
 struct EndPlace {
-  face_gear::SpacePiece piece = face_gear::SpacePiece::root;
+  tooth_space::Piece piece = tooth_space::Piece::root;
   double u = 0, v = 0;
   Vec3 p = Vec3::Zero();
 };

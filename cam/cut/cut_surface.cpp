@@ -27,32 +27,9 @@ constexpr double kSharpEnd = 0.02;  // mm: diameter of the ball that stands for 
 
 /// A line across the tooth space: the excess above the allowance from tip to tip.
 struct LinePoint {
-  face_gear::SpacePiece piece = face_gear::SpacePiece::root;
+  tooth_space::Piece piece = tooth_space::Piece::root;
   double sigma = 0, left = 0;
 };
-
-path::Region region_of(face_gear::SpacePiece piece) {
-  switch (piece) {
-    case face_gear::SpacePiece::flank_plus:
-    case face_gear::SpacePiece::flank_minus: return path::Region::flank;
-    case face_gear::SpacePiece::fillet_plus:
-    case face_gear::SpacePiece::fillet_minus: return path::Region::fillet;
-    case face_gear::SpacePiece::root: return path::Region::root;
-  }
-  return path::Region::root;
-}
-bool is_flank(face_gear::SpacePiece piece) { return region_of(piece) == path::Region::flank; }
-
-proof::Patch patch_of(face_gear::SpacePiece piece) {
-  switch (piece) {
-    case face_gear::SpacePiece::flank_plus: return proof::Patch::flank_plus;
-    case face_gear::SpacePiece::fillet_plus: return proof::Patch::fillet_plus;
-    case face_gear::SpacePiece::root: return proof::Patch::root;
-    case face_gear::SpacePiece::fillet_minus: return proof::Patch::fillet_minus;
-    case face_gear::SpacePiece::flank_minus: return proof::Patch::flank_minus;
-  }
-  return proof::Patch::root;
-}
 
 /// Pieces of a space that the fine lines of a zone take as long as.
 constexpr double kLinesWorth = 5;
@@ -87,10 +64,10 @@ class Meter {
     const auto& gear = part_.gear().parameters();
     for (const auto& ring : part_.gear().rings())
       active_end_.push_back(face_gear::active_roll_parameter(gear, ring.zone.helix_angle_rad));
-    WorkShare share(part_.zones() * (face_gear::kSpacePieces + kLinesWorth));
+    WorkShare share(part_.zones() * (tooth_space::kPieces + kLinesWorth));
     for (int zone = 0; zone < part_.zones(); ++zone) {
       const ZonePlaces places(part_, zone);
-      for (int piece = 0; piece < face_gear::kSpacePieces; ++piece) grid(places, zone, face_gear::SpacePiece(piece));
+      for (int piece = 0; piece < tooth_space::kPieces; ++piece) grid(places, zone, tooth_space::Piece(piece));
       if (!operations_.empty() && operations_.back().type != path::OperationType::roughing) fine_lines(places, zone);
     }
     summarise();
@@ -128,12 +105,12 @@ class Meter {
     return q.distance >= R - kReachTolerance;
   }
 
-  void grid(const ZonePlaces& places, int zone, face_gear::SpacePiece piece) {
+  void grid(const ZonePlaces& places, int zone, tooth_space::Piece piece) {
     proof::SurfaceGrid g;
     g.zone = zone;
-    g.patch = patch_of(piece);
+    g.patch = piece;
     const bool flank = is_flank(piece);
-    g.rows = flank ? o_.flank_rows : piece == face_gear::SpacePiece::root ? o_.root_rows : o_.fillet_rows;
+    g.rows = flank ? o_.flank_rows : piece == tooth_space::Piece::root ? o_.root_rows : o_.fillet_rows;
     g.columns = o_.columns;
     const std::size_t count = std::size_t(g.rows) * std::size_t(g.columns);
     WorkShare share(o_.columns);
@@ -153,7 +130,7 @@ class Meter {
         g.points[k] = s->contact.p;
         g.normals[k] = s->contact.n;
         excess[k] = excess_of(s->contact.p);
-        g.reachable[k] = reachable(s->contact, region_of(piece), &residual[k]);
+        g.reachable[k] = reachable(s->contact, path::region_of(piece), &residual[k]);
         if (!g.reachable[k]) left[k] = s;
       }
       share.add();
@@ -162,7 +139,8 @@ class Meter {
     for (std::size_t k = 0; k < count; ++k)
       for (std::size_t n = 0; n < excess[k].size(); ++n) g.excess_um[n][k] = excess[k][n];
     for (std::size_t k = 0; k < count && !paths_.empty(); ++k)
-      if (g.normals[k] != Vec3::Zero()) watch(g.points[k], region_of(piece), double(g.excess_um.back()[k]) / 1000);
+      if (g.normals[k] != Vec3::Zero())
+        watch(g.points[k], path::region_of(piece), double(g.excess_um.back()[k]) / 1000);
     for (std::size_t k = 0; k < count; ++k)
       if (left[k]) note_unreached(*left[k], zone, double(g.excess_um.back()[k]) / 1000);
     out_.solve_residual_mm = std::max(out_.solve_residual_mm, *std::max_element(residual.begin(), residual.end()));
@@ -180,7 +158,7 @@ class Meter {
       if (!end) count_cusps(places, r, points);
       for (const auto& q : points) {
         const double x = q.left + operations_.back().allowance_mm;
-        const path::Region region = region_of(q.piece);
+        const path::Region region = path::region_of(q.piece);
         if (nearly(region, x))
           if (const auto s = places.at(q.sigma, r)) watch(s->contact.p, region, x);
         if (x <= std::min(line_max_[region], unreached_limit(region))) continue;
@@ -195,10 +173,10 @@ class Meter {
 
   [[nodiscard]] std::vector<LinePoint> line_across(const ZonePlaces& places, double r) {
     std::vector<LinePoint> points;
-    for (int piece = 0; piece < face_gear::kSpacePieces; ++piece) {
-      const path::Region region = region_of(face_gear::SpacePiece(piece));
+    for (int piece = 0; piece < tooth_space::kPieces; ++piece) {
+      const path::Region region = path::region_of(tooth_space::Piece(piece));
       const double step = std::sqrt(8 * ball_in(region) * last_in(region).scallop_in(region)) / 24;
-      const auto [from, to] = places.range(face_gear::SpacePiece(piece), r);
+      const auto [from, to] = places.range(tooth_space::Piece(piece), r);
       const auto a = places.at(from, r), b = places.at(to, r);
       if (!a || !b) continue;
       const double length = (b->contact.p - a->contact.p).norm();
@@ -206,7 +184,7 @@ class Meter {
       line_step_ = std::max(line_step_, length / n);
       // Where two pieces join one point is enough.
       for (int k = points.empty() ? 0 : 1; k <= n; ++k)
-        points.push_back({face_gear::SpacePiece(piece), from + (to - from) * k / n, 0});
+        points.push_back({tooth_space::Piece(piece), from + (to - from) * k / n, 0});
     }
     tbb::parallel_for(std::size_t(0), points.size(),
                       [&](std::size_t k) { points[k].left = left_at(places, points[k].sigma, r); });
@@ -229,7 +207,7 @@ class Meter {
       const auto top = std::max_element(first, line.begin() + long(valleys[v]),
                                         [](const auto& p, const auto& q) { return p.left < q.left; });
       const double valley = 0.5 * (a.left + b.left);
-      const path::Region region = region_of(top->piece);
+      const path::Region region = path::region_of(top->piece);
       if (by_side(region)) continue;
       const double wanted = last_in(region).scallop_in(region);
       if (top->left - valley < 0.02 * wanted) continue;  // two samples of one valley
@@ -293,12 +271,12 @@ class Meter {
   }
 
   void note_unreached(const face_gear::SheetPoint& s, int zone, double height) {
-    if (height <= unreached_limit(region_of(s.piece))) return;
+    if (height <= unreached_limit(path::region_of(s.piece))) return;
     auto& u = out_.unreached;
     u.height_mm = std::max(u.height_mm, height);
     if (!is_flank(s.piece) || s.u > active_end_[std::size_t(zone)]) return;
     if (!u.active || height > u.active->height_mm)
-      u.active = {height, zone, patch_of(s.piece), std::hypot(s.contact.p.x(), s.contact.p.y()), s.contact.p.z()};
+      u.active = {height, zone, s.piece, std::hypot(s.contact.p.x(), s.contact.p.y()), s.contact.p.z()};
   }
 
   static void finish(proof::ExcessResult& r, const std::vector<float>& values_um) {
@@ -331,7 +309,7 @@ class Meter {
       path::ByRegion<double> most{{-INFINITY, -INFINITY, -INFINITY}}, least{{INFINITY, INFINITY, INFINITY}};
       for (const auto& g : out_.grids) {
         values.insert(values.end(), g.excess_um[n].begin(), g.excess_um[n].end());
-        const path::Region region = proof::region_of(g.patch);
+        const path::Region region = path::region_of(g.patch);
         for (const float e : g.excess_um[n]) {
           most[region] = std::max(most[region], double(e) / 1000);
           least[region] = std::min(least[region], double(e) / 1000);
@@ -357,7 +335,7 @@ class Meter {
         const float e = g.excess_um.back()[k];
         if (g.reachable[k]) {
           values.push_back(e);
-          double& most = out_.finished_in_mm[proof::region_of(g.patch)];
+          double& most = out_.finished_in_mm[path::region_of(g.patch)];
           most = std::max(most, double(e) / 1000);
         } else if (g.normals[k] != Vec3::Zero()) {
           ++out_.unreached.points;
@@ -412,7 +390,7 @@ class Meter {
     u.limit_mm = unreached_limit(path::Region::fillet);
     double left = 0, all = 0;
     for (const auto& g : out_.grids) {
-      const double limit = unreached_limit(proof::region_of(g.patch));
+      const double limit = unreached_limit(path::region_of(g.patch));
       const auto columns = std::size_t(g.columns);
       for (std::size_t row = 0; row + 1 < std::size_t(g.rows); ++row)
         for (std::size_t column = 0; column + 1 < columns; ++column) {

@@ -11,7 +11,7 @@ namespace toothpath::cut {
 namespace {
 
 constexpr int kColumns = 33;
-constexpr int kRows[face_gear::kSpacePieces] = {40, 33, 9, 33, 40};  // places of a piece across the space
+constexpr int kRows[tooth_space::kPieces] = {40, 33, 9, 33, 40};  // places of a piece across the space
 constexpr double kTouch = 1e-7;    // mm: deeper in, a ball counts as stopped by what it meets
 constexpr int kShrinkSteps = 60;   // of one ball; each takes it to the place it met deepest
 constexpr double kBeside = 2e-3;   // of the radius: a foot this near to the place itself
@@ -41,8 +41,8 @@ class BallSearch {
     tbb::parallel_for(0, kColumns, [&](int c) {
       Column& best = columns[std::size_t(c)];
       const double share = double(c) / (kColumns - 1), r = places_.radius(share);
-      for (int piece = 0; piece < face_gear::kSpacePieces; ++piece) {
-        const auto [from, to] = places_.range(face_gear::SpacePiece(piece), r);
+      for (int piece = 0; piece < tooth_space::kPieces; ++piece) {
+        const auto [from, to] = places_.range(tooth_space::Piece(piece), r);
         for (int row = 0; row < kRows[piece]; ++row) {
           const double sigma = from + (to - from) * row / (kRows[piece] - 1);
           if (const auto R = radius(sigma, share); R && *R < best.radius) best = {*R, sigma, share};
@@ -80,8 +80,8 @@ class BallSearch {
       for (const auto& [ds, dr] :
            {std::pair{step_sigma, 0.0}, {-step_sigma, 0.0}, {0.0, step_share}, {0.0, -step_share}}) {
         const double at = std::clamp(share + dr, 0.0, 1.0), r = places_.radius(at);
-        const double s = std::clamp(sigma + ds, places_.range(face_gear::SpacePiece::flank_plus, r).first,
-                                    places_.range(face_gear::SpacePiece::flank_minus, r).second);
+        const double s = std::clamp(sigma + ds, places_.range(tooth_space::Piece::flank_plus, r).first,
+                                    places_.range(tooth_space::Piece::flank_minus, r).second);
         const auto there = radius(s, at);
         if (!there || *there >= R) continue;
         R = *there;
@@ -94,7 +94,7 @@ class BallSearch {
       step_sigma *= 0.5;
       step_share *= 0.5;
     }
-    LargestBall ball{R < kSharp ? 0.0 : R, zone_, face_gear::SpacePiece::root, Vec3::Zero()};
+    LargestBall ball{R < kSharp ? 0.0 : R, zone_, tooth_space::Piece::root, Vec3::Zero()};
     if (const auto s = places_.at(sigma, places_.radius(share))) {
       ball.piece = s->piece;
       ball.place = s->contact.p;

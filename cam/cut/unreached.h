@@ -9,7 +9,7 @@ namespace toothpath::cut {
 struct LargestBall {
   double radius_mm = 0;  ///< 0: no ball above 1 um reaches everything, the fillet has a sharp corner
   int zone = 0;
-  face_gear::SpacePiece piece = face_gear::SpacePiece::root;
+  tooth_space::Piece piece = tooth_space::Piece::root;
   Vec3 place = Vec3::Zero();  ///< on the surface, gear frame
 };
 

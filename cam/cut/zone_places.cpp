@@ -30,15 +30,15 @@ double ZonePlaces::tip_sigma(bool plus, double r) const {
   return in;
 }
 
-std::pair<double, double> ZonePlaces::range(face_gear::SpacePiece piece, double r) const {
+std::pair<double, double> ZonePlaces::range(tooth_space::Piece piece, double r) const {
   switch (piece) {
-    case face_gear::SpacePiece::flank_plus: return {tip_sigma(true, r), 1.0};
-    case face_gear::SpacePiece::fillet_plus: return {1.0, 2.0};
-    case face_gear::SpacePiece::root: return {2.0, 3.0};
-    case face_gear::SpacePiece::fillet_minus: return {3.0, 4.0};
-    case face_gear::SpacePiece::flank_minus: return {4.0, tip_sigma(false, r)};
+    case tooth_space::Piece::flank_plus: return {tip_sigma(true, r), 1.0};
+    case tooth_space::Piece::fillet_plus: return {1.0, 2.0};
+    case tooth_space::Piece::root: return {2.0, 3.0};
+    case tooth_space::Piece::fillet_minus: return {3.0, 4.0};
+    case tooth_space::Piece::flank_minus: return {4.0, tip_sigma(false, r)};
+    default: return {0, 0};
   }
-  return {0, 0};
 }
 
 }  // namespace toothpath::cut

@@ -20,7 +20,7 @@ class ZonePlaces {
   /// Point, normal and derivatives; `u` and `v` are the parameters of the piece. Nothing where the piece has no point.
   [[nodiscard]] std::optional<face_gear::SheetPoint> at(double sigma, double r) const { return sheet_.raw(sigma, r); }
   /// sigma from end to end of a piece at radius r; flanks begin at the tip surface.
-  [[nodiscard]] std::pair<double, double> range(face_gear::SpacePiece piece, double r) const;
+  [[nodiscard]] std::pair<double, double> range(tooth_space::Piece piece, double r) const;
 
  private:
   [[nodiscard]] double tip_sigma(bool plus, double r) const;

@@ -123,7 +123,7 @@ std::vector<proof::SurfaceGrid> wall_grids(std::span<const WallPoint> points, co
   for (std::size_t begin = 0; begin + per_wall <= points.size(); begin += per_wall) {
     proof::SurfaceGrid grid;
     grid.zone = points[begin].half;
-    grid.patch = points[begin].wall == 0 ? proof::Patch::wall_l : proof::Patch::wall_u;
+    grid.patch = points[begin].wall == 0 ? tooth_space::Piece::wall_l : tooth_space::Piece::wall_u;
     grid.rows = rows;
     grid.columns = columns;
     grid.excess_um.resize(excess.after.size());

@@ -96,9 +96,7 @@ std::optional<GapNode> LineFit::gap_at(const AxisLine<double>& axis, double t, c
 /// On a modified or corrected flank: from the foot on the plain one, hundredths of a millimetre away.
 std::optional<GapNode> LineFit::displaced_gap(const Vec3& x, double t, const face_gear::FlankFoot<double>& near) const {
   const Turn to_space(flank_.side > 0 ? 0.0 : flank_.surface.pitch);
-  const auto foot =
-      flank_.displaced->foot(flank_.side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus,
-                             to_space(x), near.theta_foot, near.at.B);
+  const auto foot = flank_.displaced->foot(tooth_space::flank_of(flank_.side), to_space(x), near.theta_foot, near.at.B);
   if (!foot) return {};
   return GapNode{t,       foot->distance - law_.rho(t), foot->at.p.head<2>().norm(), foot->at.p.z(), foot->u,
                  near.at, to_space.back(foot->at.n)};

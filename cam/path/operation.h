@@ -7,12 +7,18 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/tooth_space/piece.h"
+
 namespace toothpath::path {
 
 /// Parts of the finished surface of a tooth space.
 enum class Region : std::uint8_t { flank, fillet, root };
 inline constexpr std::array kRegions{Region::flank, Region::fillet, Region::root};
 [[nodiscard]] const char* to_string(Region region);  ///< as in the job file
+/// What a piece of a tooth space is part of; walls are flanks.
+[[nodiscard]] constexpr Region region_of(tooth_space::Piece piece) {
+  return is_fillet(piece) ? Region::fillet : piece == tooth_space::Piece::root ? Region::root : Region::flank;
+}
 
 /// One value for each region.
 template <typename T>

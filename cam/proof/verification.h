@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "cam/proof/patch.h"
 #include "cam/tool/body.h"
 #include "geometry/base/vec.h"
+#include "geometry/tooth_space/piece.h"
 
 namespace toothpath::proof {
 
@@ -70,7 +70,7 @@ struct UnreachedResult {
   struct Place {
     double height_mm = 0;
     int zone = 0;
-    Patch patch = Patch::flank_plus;
+    tooth_space::Piece patch = tooth_space::Piece::flank_plus;
     double radius_mm = 0, z_mm = 0;
   };
   std::optional<Place>
@@ -88,7 +88,7 @@ struct ScallopResult {
 /// One grid of the cut surface: a patch of tooth space 0 with its deviation. Row-major, rows along the profile.
 struct SurfaceGrid {
   int zone = 0;
-  Patch patch = Patch::root;
+  tooth_space::Piece patch = tooth_space::Piece::root;
   int rows = 0, columns = 0;
   std::vector<Vec3> points, normals;
   std::vector<std::vector<float>> excess_um;  ///< one field an operation, in the job's order

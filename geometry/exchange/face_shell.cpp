@@ -76,8 +76,8 @@ ExactRow row_of(const std::shared_ptr<Sections>& sections, const std::vector<Seg
       for (const double share : v[k]) {
         const auto p = strip_point(**section, segments[k], sections->teeth(), share);
         if (!p)
-          return fail("{} is not defined at radius {:.4f} mm",
-                      mesh::patch_name(mesh::segment_patch(std::size_t(segments[k]))), sections->radius(u));
+          return fail("{} is not defined at radius {:.4f} mm", to_string(mesh::segment_patch(std::size_t(segments[k]))),
+                      sections->radius(u));
         out[k].push_back(*p);
       }
     return out;
@@ -135,7 +135,7 @@ Result<ToothRing> make_ring(const face_gear::SpaceSheet& sheet, std::size_t zone
   for (const Segment s : segments) {
     const bool next = s == Segment::fillet_minus || s == Segment::flank_minus || s == Segment::land_right;
     const bool land = s == Segment::land_right;
-    out.strips.push_back({land ? "top land" : mesh::patch_name(mesh::segment_patch(std::size_t(s))), next ? 1 : 0});
+    out.strips.push_back({land ? "top land" : to_string(mesh::segment_patch(std::size_t(s))), next ? 1 : 0});
   }
   out.row = row_of(sections, segments);
   out.place = fmt::format("zone {}", zone);
@@ -165,7 +165,7 @@ Result<GearShell> face_gear_shell(const face_gear::FaceGear& gear) {
                   kLeastFace_mm);
     for (const auto& [ring, end] : {std::pair(k, std::size_t(1)), {k + 1, std::size_t(0)}}) {
       ToothRing& r = shell.rings[ring];
-      const bool root = r.strips[r.foot].name == mesh::patch_name(mesh::Patch::root);
+      const bool root = r.strips[r.foot].name == to_string(tooth_space::Piece::root);
       const auto meets = floor_meets_root(*sections[ring], double(end), floor, root);
       if (!meets) return meets.error();
       r.foot_on_circle[end] = *meets;

@@ -70,7 +70,7 @@ class Look {
   }
 
   void flank(int side, double theta, double B) {
-    const auto piece = side > 0 ? SpacePiece::flank_plus : SpacePiece::flank_minus;
+    const auto piece = tooth_space::flank_of(side);
     const auto q = modified_.at(piece, theta, B), p = plain_.at(piece, theta, B);
     if (!q || !p) return;
     const double removed = (p->p - q->p).dot(p->n), turned = std::acos(std::min(1.0, p->n.dot(q->n)));
@@ -82,7 +82,7 @@ class Look {
   }
 
   void fillet(int side, double A, double Z) {
-    const auto piece = side > 0 ? SpacePiece::fillet_plus : SpacePiece::fillet_minus;
+    const auto piece = tooth_space::fillet_of(side);
     const auto q = modified_.at(piece, A, Z), p = plain_.at(piece, A, Z);
     if (!q || !p) return;
     const double hollow = hollow_radius(*q);

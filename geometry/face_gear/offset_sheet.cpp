@@ -9,7 +9,7 @@ namespace toothpath::face_gear {
 namespace {
 
 // Nodes per piece: flanks bend slowly, fillets turn by more than 60 degrees.
-constexpr int kNodes[kSpacePieces] = {56, 28, 8, 28, 56};
+constexpr int kNodes[tooth_space::kPieces] = {56, 28, 8, 28, 56};
 
 // A crossing closer than this in sigma is one place seen from two pieces, or too small to hold a thousandth of a
 // micrometre.
@@ -28,7 +28,7 @@ std::optional<std::pair<double, double>> crossing(const Vec2& a0, const Vec2& a1
 }  // namespace
 
 SheetCorner corner_of(const SheetGap& gap) {
-  constexpr double kRootBegins = double(SpacePiece::root), kRootEnds = kRootBegins + 1;
+  constexpr double kRootBegins = double(tooth_space::Piece::root), kRootEnds = kRootBegins + 1;
   if (gap.from < kRootBegins && gap.to > kRootEnds) return SheetCorner::both;
   return gap.from < kRootBegins ? SheetCorner::plus : SheetCorner::minus;
 }
@@ -119,30 +119,30 @@ std::vector<OffsetSheet::Station> OffsetSheet::regular_stations(double r_from, d
   return {};
 }
 
-double OffsetSheet::parameter(SpacePiece piece, double t, double r) const {
+double OffsetSheet::parameter(tooth_space::Piece piece, double t, double r) const {
   const auto& w = space_.surface().shaper;
   switch (piece) {
-    case SpacePiece::flank_plus: {
+    case tooth_space::Piece::flank_plus: {
       const double top = top_plus_[0] + top_plus_[1] * r;
       return top + t * (w.theta_t - top);
     }
-    case SpacePiece::fillet_plus: return w.A_t + t * (w.A_e - w.A_t);
-    case SpacePiece::root: return t;
-    case SpacePiece::fillet_minus: return w.A_e + t * (w.A_t - w.A_e);
-    case SpacePiece::flank_minus: {
+    case tooth_space::Piece::fillet_plus: return w.A_t + t * (w.A_e - w.A_t);
+    case tooth_space::Piece::root: return t;
+    case tooth_space::Piece::fillet_minus: return w.A_e + t * (w.A_t - w.A_e);
+    case tooth_space::Piece::flank_minus: {
       const double top = top_minus_[0] + top_minus_[1] * r;
       return w.theta_t + t * (top - w.theta_t);
     }
+    default: return 0;
   }
-  return 0;
 }
 
-std::optional<SheetPoint> OffsetSheet::solve(SpacePiece piece, double u, double r, double v_start) const {
+std::optional<SheetPoint> OffsetSheet::solve(tooth_space::Piece piece, double u, double r, double v_start) const {
   SheetPoint s;
   s.piece = piece;
   s.u = u;
   s.v = v_start;
-  const bool flank = piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus;
+  const bool flank = is_flank(piece);
   const double limit = flank ? 0.1 : 0.1 * r;
   for (int k = 0; k < 40; ++k) {
     const auto q = space_.at(piece, u, s.v);
@@ -166,14 +166,14 @@ std::optional<OffsetSheet::Station> OffsetSheet::make_station(double r, const St
   Station station;
   station.r = r;
   std::size_t index = 0;
-  for (int piece = 0; piece < kSpacePieces; ++piece) {
-    const auto kind = SpacePiece(piece);
+  for (int piece = 0; piece < tooth_space::kPieces; ++piece) {
+    const auto kind = tooth_space::Piece(piece);
     const int side = piece < 2 ? 1 : -1;
     for (int k = 0; k <= kNodes[piece]; ++k, ++index) {
       const double t = double(k) / kNodes[piece], u = parameter(kind, t, r);
       std::optional<SheetPoint> s;
       const double Z_plane = std::sqrt(std::max(0.0, r * r - f.E * f.E));
-      if (kind == SpacePiece::flank_plus || kind == SpacePiece::flank_minus) {
+      if (is_flank(kind)) {
         // The ball-centre surface of a flank is the flank itself, turned, at theta - delta cos(beta_b)/r_b.
         const double theta_c = u - delta_ * f.shaper.cos_bb / f.shaper.r_b;
         const double start = neighbour ? neighbour->nodes[index].at.v : regular_start_B(f, side, theta_c);
@@ -181,13 +181,13 @@ std::optional<OffsetSheet::Station> OffsetSheet::make_station(double r, const St
         if (B) s = solve(kind, u, r, *B);
       } else {
         // Edge by edge in one section; where Newton starts from nothing, from the edge's own place at this radius.
-        const bool follows = !neighbour && (k > 0 || kind != SpacePiece::fillet_plus);
+        const bool follows = !neighbour && (k > 0 || kind != tooth_space::Piece::fillet_plus);
         const double plane = (Z_plane + f.shaper.r_a * f.Cg) / f.Sg;
         const double start = follows     ? station.nodes.back().at.v
                              : neighbour ? neighbour->nodes[index].at.v + (r - neighbour->r)
                                          : plane;
         if (neighbour || follows) s = solve(kind, u, r, start);
-        if (!s && kind != SpacePiece::root)
+        if (!s && kind != tooth_space::Piece::root)
           if (const auto Z = fillet_Z_at_radius(f, side, u, r, start)) s = solve(kind, u, r, *Z);
         if (!s) s = solve(kind, u, r, plane);
       }
@@ -283,8 +283,8 @@ std::size_t OffsetSheet::station_before(double r) const {
 
 std::optional<SheetPoint> OffsetSheet::raw(double sigma, double r) const {
   if (stations_.size() < 2) return {};
-  const double bounded = std::clamp(sigma, 0.0, double(kSpacePieces));
-  const int piece = std::min(int(bounded), kSpacePieces - 1);
+  const double bounded = std::clamp(sigma, 0.0, double(tooth_space::kPieces));
+  const int piece = std::min(int(bounded), tooth_space::kPieces - 1);
   const double t = bounded - piece;
   std::size_t first = 0;
   for (int p = 0; p < piece; ++p) first += std::size_t(kNodes[p]) + 1;
@@ -295,7 +295,7 @@ std::optional<SheetPoint> OffsetSheet::raw(double sigma, double r) const {
   const double x = t * kNodes[piece] - double(k - first), y = (r - s0.r) / (s1.r - s0.r);
   const double v = (1 - y) * ((1 - x) * s0.nodes[k].at.v + x * s0.nodes[k + 1].at.v) +
                    y * ((1 - x) * s1.nodes[k].at.v + x * s1.nodes[k + 1].at.v);
-  return solve(SpacePiece(piece), parameter(SpacePiece(piece), t, r), r, v);
+  return solve(tooth_space::Piece(piece), parameter(tooth_space::Piece(piece), t, r), r, v);
 }
 
 std::vector<SheetGap> OffsetSheet::gaps(double r) const {

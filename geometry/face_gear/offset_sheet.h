@@ -15,7 +15,7 @@
 namespace toothpath::face_gear {
 
 struct SheetPoint {
-  SpacePiece piece = SpacePiece::root;
+  tooth_space::Piece piece = tooth_space::Piece::root;
   double u = 0, v = 0;  ///< parameters of the contact point on the piece
   Vec3 centre = Vec3::Zero();
   PatchPoint contact;
@@ -68,8 +68,8 @@ class OffsetSheet {
   /// Evenly spaced stations over the part of the range in which the surfaces exist; none or at least two.
   [[nodiscard]] std::vector<Station> regular_stations(double r_from, double r_to, int count) const;
   [[nodiscard]] std::optional<Station> make_station(double r, const Station* neighbour) const;
-  [[nodiscard]] std::optional<SheetPoint> solve(SpacePiece piece, double u, double r, double v_start) const;
-  [[nodiscard]] double parameter(SpacePiece piece, double fraction, double r) const;
+  [[nodiscard]] std::optional<SheetPoint> solve(tooth_space::Piece piece, double u, double r, double v_start) const;
+  [[nodiscard]] double parameter(tooth_space::Piece piece, double fraction, double r) const;
   void find_gaps(Station& station) const;
   [[nodiscard]] bool refine_gap(SheetGap& gap, double r) const;
   [[nodiscard]] std::size_t station_before(double r) const;

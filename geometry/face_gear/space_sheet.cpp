@@ -11,17 +11,13 @@ namespace {
 
 using Dual2 = Dual<double, 2>;
 
-constexpr int kNewtonSteps = 20;
+using tooth_space::Piece;
 
-bool is_flank(SpacePiece piece) { return piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus; }
-int side_of(SpacePiece piece) { return piece == SpacePiece::flank_plus || piece == SpacePiece::fillet_plus ? 1 : -1; }
+constexpr int kNewtonSteps = 20;
 
 PatchPoint from_dual(const Vec3T<Dual2>& p, const Vec3T<Dual2>& n) {
   return {value(p), value(n), derivative(p, 0), derivative(p, 1), derivative(n, 0), derivative(n, 1)};
 }
-
-SpacePiece flank_piece(int side) { return side > 0 ? SpacePiece::flank_plus : SpacePiece::flank_minus; }
-SpacePiece fillet_piece(int side) { return side > 0 ? SpacePiece::fillet_plus : SpacePiece::fillet_minus; }
 
 /// Radius of a point, and how fast it changes with the two parameters.
 struct Radius {
@@ -37,17 +33,6 @@ PatchPoint placed(const PatchPoint& q, const Turn& turn) {
 }
 
 }  // namespace
-
-const char* to_string(SpacePiece piece) {
-  switch (piece) {
-    case SpacePiece::flank_plus: return "flank +1";
-    case SpacePiece::fillet_plus: return "fillet +1";
-    case SpacePiece::root: return "root";
-    case SpacePiece::fillet_minus: return "fillet -1";
-    case SpacePiece::flank_minus: return "flank -1";
-  }
-  return "";
-}
 
 SpaceSheet::SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring)
     : ring_(ring),
@@ -75,13 +60,13 @@ SurfacePointT<S> SpaceSheet::root_point(const FaceGearSurface<S>& f, const S& fr
   return {turned(m.p, turn), turned(m.n, turn)};
 }
 
-std::optional<PatchPoint> SpaceSheet::plain(SpacePiece piece, double u, double v) const {
+std::optional<PatchPoint> SpaceSheet::plain(tooth_space::Piece piece, double u, double v) const {
   const auto& f = ring_.surface;
   const int s = side_of(piece);
   PatchPoint q;
   switch (piece) {
-    case SpacePiece::flank_plus:
-    case SpacePiece::flank_minus: {
+    case Piece::flank_plus:
+    case Piece::flank_minus: {
       if (!(std::abs(v) < 1.4)) return {};
       const FaceGearSurface<double>::FlankPlace place(f, s, u, v);
       const auto k = place.curvature();
@@ -98,18 +83,19 @@ std::optional<PatchPoint> SpaceSheet::plain(SpacePiece piece, double u, double v
       q = {point.p, point.n, d.u, d.v, dn(d.u), dn(d.v)};
       break;
     }
-    case SpacePiece::fillet_plus:
-    case SpacePiece::fillet_minus: {
+    case Piece::fillet_plus:
+    case Piece::fillet_minus: {
       const auto g = dual_.fillet(s, Dual2::variable(u, 0), Dual2::variable(v, 1));
       if (!g.defined) return {};
       q = from_dual(g.p, g.n);
       break;
     }
-    case SpacePiece::root: {
+    case Piece::root: {
       const auto g = root_point<Dual2>(dual_, Dual2::variable(u, 0), Dual2::variable(v, 1));
       q = from_dual(g.p, g.n);
       break;
     }
+    default: return {};
   }
   return q;
 }
@@ -122,7 +108,7 @@ FlankField SpaceSheet::field(int side) const {
 }
 
 template <typename S>
-std::optional<SurfacePointT<S>> SpaceSheet::moved(const FaceGearSurface<S>& f, SpacePiece piece, const S& u,
+std::optional<SurfacePointT<S>> SpaceSheet::moved(const FaceGearSurface<S>& f, Piece piece, const S& u,
                                                   const S& v) const {
   const int s = side_of(piece);
   if (is_flank(piece)) {
@@ -134,7 +120,7 @@ std::optional<SurfacePointT<S>> SpaceSheet::moved(const FaceGearSurface<S>& f, S
   return SurfacePointT<S>{at.p + at.n * blend(s)->at(u, v), at.n};
 }
 
-std::optional<PatchPoint> SpaceSheet::displaced(SpacePiece piece, double u, double v, bool curved) const {
+std::optional<PatchPoint> SpaceSheet::displaced(Piece piece, double u, double v, bool curved) const {
   if (is_flank(piece) && (!(std::abs(v) < 1.4) || !(ring_.surface.flank_J(side_of(piece), u, v) > 0))) return {};
   PatchPoint q;
   const auto normal = [&](const Vec3& plain) {
@@ -175,10 +161,10 @@ std::optional<PatchPoint> SpaceSheet::displaced(SpacePiece piece, double u, doub
   return q;
 }
 
-std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) const {
-  const bool plain_here = !ring_.displaced() || piece == SpacePiece::root;
+std::optional<PatchPoint> SpaceSheet::at(Piece piece, double u, double v) const {
+  const bool plain_here = !ring_.displaced() || piece == Piece::root;
   const auto q = plain_here ? plain(piece, u, v) : displaced(piece, u, v, true);
-  if (!q || piece == SpacePiece::root) return q;
+  if (!q || piece == Piece::root) return q;
   return side_of(piece) > 0 ? q : placed(*q, to_minus_);
 }
 
@@ -188,7 +174,7 @@ std::optional<FlankCoordinates> SpaceSheet::invert(int side, double r, double z,
   auto at = invert_flank(f, side, r, z, start);
   if (!at || field(side).none()) return at;
   for (int k = 0; k < kNewtonSteps; ++k) {
-    const auto q = displaced(flank_piece(side), at->theta, at->B, false);
+    const auto q = displaced(tooth_space::flank_of(side), at->theta, at->B, false);
     if (!q) return {};
     const Radius now(*q);
     const double dr = r - now.r, dz = z - q->p.z();
@@ -218,7 +204,7 @@ std::optional<TipPlace> SpaceSheet::tip(int side, double r, const std::optional<
 
 SurfacePointT<double> SpaceSheet::flank(int side, double theta, double B) const {
   if (!field(side).none())
-    if (const auto q = displaced(flank_piece(side), theta, B, false)) return {q->p, q->n};
+    if (const auto q = displaced(tooth_space::flank_of(side), theta, B, false)) return {q->p, q->n};
   return ring_.surface.flank(side, theta, B);
 }
 
@@ -227,7 +213,7 @@ Vec3 SpaceSheet::fillet(int side, double A, double Z) const {
   return field(side).none() ? at.p : Vec3(at.p + at.n * blend(side)->at(A, Z));
 }
 
-std::optional<double> SpaceSheet::v_at_radius(SpacePiece piece, double u, double r, double v) const {
+std::optional<double> SpaceSheet::v_at_radius(Piece piece, double u, double r, double v) const {
   for (int k = 0; k < kNewtonSteps; ++k) {
     const auto q = displaced(piece, u, v, false);
     if (!q) return {};
@@ -241,49 +227,50 @@ std::optional<double> SpaceSheet::v_at_radius(SpacePiece piece, double u, double
 
 std::optional<double> SpaceSheet::B_at_radius(int side, double theta, double r, double start_B) const {
   const auto B = flank_B_at_radius(ring_.surface, side, theta, r, start_B);
-  return !B || field(side).none() ? B : v_at_radius(flank_piece(side), theta, r, *B);
+  return !B || field(side).none() ? B : v_at_radius(tooth_space::flank_of(side), theta, r, *B);
 }
 
 std::optional<double> SpaceSheet::Z_at_radius(int side, double A, double r, double start_Z) const {
   const auto Z = fillet_Z_at_radius(ring_.surface, side, A, r, start_Z);
-  return !Z || field(side).none() ? Z : v_at_radius(fillet_piece(side), A, r, *Z);
+  return !Z || field(side).none() ? Z : v_at_radius(tooth_space::fillet_of(side), A, r, *Z);
 }
 
-std::optional<PatchPoint> SpaceSheet::point(SpacePiece piece, double u, double v) const {
+std::optional<PatchPoint> SpaceSheet::point(Piece piece, double u, double v) const {
   if (ring_.displaced()) {
-    const auto q = piece == SpacePiece::root ? plain(piece, u, v) : displaced(piece, u, v, false);
-    if (!q || piece == SpacePiece::root) return q;
+    const auto q = piece == Piece::root ? plain(piece, u, v) : displaced(piece, u, v, false);
+    if (!q || piece == Piece::root) return q;
     return side_of(piece) > 0 ? q : placed(*q, to_minus_);
   }
   const auto& f = ring_.surface;
   const int s = side_of(piece);
   SurfacePointT<double> q;
   switch (piece) {
-    case SpacePiece::flank_plus:
-    case SpacePiece::flank_minus: {
+    case Piece::flank_plus:
+    case Piece::flank_minus: {
       const FaceGearSurface<double>::FlankPlace place(f, s, u, v);
       if (!(std::abs(v) < 1.4) || !(place.curvature().J > 0)) return {};
       q = place.point(place.turn());
       break;
     }
-    case SpacePiece::fillet_plus:
-    case SpacePiece::fillet_minus: {
+    case Piece::fillet_plus:
+    case Piece::fillet_minus: {
       const auto g = f.fillet(s, u, v);
       if (!g.defined) return {};
       q = {g.p, g.n};
       break;
     }
-    case SpacePiece::root: q = root_point<double>(f, u, v); break;
+    case Piece::root: q = root_point<double>(f, u, v); break;
+    default: return {};
   }
   PatchPoint out;
-  const bool turn = piece == SpacePiece::fillet_minus || piece == SpacePiece::flank_minus;
+  const bool turn = piece == Piece::fillet_minus || piece == Piece::flank_minus;
   out.p = turn ? to_minus_(q.p) : q.p;
   out.n = turn ? to_minus_(q.n) : q.n;
   return out;
 }
 
 /// By the parallel surface through the point: two unknowns, and no normal bends.
-std::optional<PatchFoot> SpaceSheet::nominal_flank_foot(SpacePiece piece, const Vec3& c, double u, double v) const {
+std::optional<PatchFoot> SpaceSheet::nominal_flank_foot(Piece piece, const Vec3& c, double u, double v) const {
   const auto& f = ring_.surface;
   const int side = side_of(piece);
   const Vec3 x = side > 0 ? c : to_minus_.back(c);
@@ -296,7 +283,7 @@ std::optional<PatchFoot> SpaceSheet::nominal_flank_foot(SpacePiece piece, const 
   return PatchFoot{foot->theta_foot, foot->at.B, foot->d, *q};
 }
 
-std::optional<PatchFoot> SpaceSheet::foot(SpacePiece piece, const Vec3& c, double u, double v) const {
+std::optional<PatchFoot> SpaceSheet::foot(Piece piece, const Vec3& c, double u, double v) const {
   if (is_flank(piece) && !ring_.displaced() && std::abs(v) < 1.4)
     if (auto f = nominal_flank_foot(piece, c, u, v)) return f;
   PatchFoot f;
@@ -323,7 +310,7 @@ std::optional<PatchFoot> SpaceSheet::foot(SpacePiece piece, const Vec3& c, doubl
     if (!step.allFinite()) return {};
     // Roll, normal and base-tangent angles move by at most 0.15 rad, sections and distances by a fraction of a
     // millimetre scale.
-    const double limit_u = piece == SpacePiece::root ? 0.5 : 0.15;
+    const double limit_u = piece == Piece::root ? 0.5 : 0.15;
     const double limit_v = is_flank(piece) ? 0.15 : 2 * ring_.surface.shaper.m_t;
     const double shrink = std::max({1.0, std::abs(step[0]) / limit_u, std::abs(step[1]) / limit_v});
     step /= shrink;

@@ -11,13 +11,9 @@
 #include "geometry/face_gear/fillet_blend.h"
 #include "geometry/face_gear/gear.h"
 #include "geometry/face_gear/inverse.h"
+#include "geometry/tooth_space/piece.h"
 
 namespace toothpath::face_gear {
-
-/// From tooth 0 through the root to tooth 1. "plus": side +1 of tooth 0, "minus": side -1 of tooth 1.
-enum class SpacePiece { flank_plus, fillet_plus, root, fillet_minus, flank_minus };
-inline constexpr int kSpacePieces = 5;
-[[nodiscard]] const char* to_string(SpacePiece piece);
 
 /// A point of a piece with derivatives. Gear frame, mm; n is the unit normal out of the material.
 struct PatchPoint {
@@ -50,13 +46,13 @@ class SpaceSheet {
   [[nodiscard]] const FaceGearSurface<double>& surface() const { return ring_.surface; }
 
   /// Point and derivatives; nothing where the piece has no contact (fillet out of its domain, J <= 0 on a flank).
-  [[nodiscard]] std::optional<PatchPoint> at(SpacePiece piece, double u, double v) const;
+  [[nodiscard]] std::optional<PatchPoint> at(tooth_space::Piece piece, double u, double v) const;
   /// The same without derivatives (pu, pv, nu, nv are left unset).
-  [[nodiscard]] std::optional<PatchPoint> point(SpacePiece piece, double u, double v) const;
+  [[nodiscard]] std::optional<PatchPoint> point(tooth_space::Piece piece, double u, double v) const;
 
   /// Newton from (u, v) to the local nearest point; nothing if it does not converge (1e-12 mm) in 30 steps.
   /// The point may lie beyond the borders of the piece.
-  [[nodiscard]] std::optional<PatchFoot> foot(SpacePiece piece, const Vec3& c, double u, double v) const;
+  [[nodiscard]] std::optional<PatchFoot> foot(tooth_space::Piece piece, const Vec3& c, double u, double v) const;
 
   /// Where the flank of `side` meets the tip surface at radius r; `start` as in invert_flank.
   [[nodiscard]] std::optional<TipPlace> tip(int side, double r,
@@ -90,15 +86,16 @@ class SpaceSheet {
   template <typename S>
   [[nodiscard]] SurfacePointT<S> root_point(const FaceGearSurface<S>& f, const S& fraction, const S& Z) const;
   /// The plain piece before it is turned to its tooth.
-  [[nodiscard]] std::optional<PatchPoint> plain(SpacePiece piece, double u, double v) const;
+  [[nodiscard]] std::optional<PatchPoint> plain(tooth_space::Piece piece, double u, double v) const;
   /// A displaced flank or fillet, likewise; with curvatures or without nu, nv.
-  [[nodiscard]] std::optional<PatchPoint> displaced(SpacePiece piece, double u, double v, bool curved) const;
+  [[nodiscard]] std::optional<PatchPoint> displaced(tooth_space::Piece piece, double u, double v, bool curved) const;
   template <typename S>
-  [[nodiscard]] std::optional<SurfacePointT<S>> moved(const FaceGearSurface<S>& f, SpacePiece piece, const S& u,
+  [[nodiscard]] std::optional<SurfacePointT<S>> moved(const FaceGearSurface<S>& f, tooth_space::Piece piece, const S& u,
                                                       const S& v) const;
   /// Newton in one parameter of a displaced piece to radius r, the other one fixed.
-  [[nodiscard]] std::optional<double> v_at_radius(SpacePiece piece, double u, double r, double v) const;
-  [[nodiscard]] std::optional<PatchFoot> nominal_flank_foot(SpacePiece piece, const Vec3& c, double u, double v) const;
+  [[nodiscard]] std::optional<double> v_at_radius(tooth_space::Piece piece, double u, double r, double v) const;
+  [[nodiscard]] std::optional<PatchFoot> nominal_flank_foot(tooth_space::Piece piece, const Vec3& c, double u,
+                                                            double v) const;
 
   FaceGearRing ring_;
   FaceGearSurface<Dual2> dual_;

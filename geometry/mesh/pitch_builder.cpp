@@ -38,8 +38,7 @@ Result<std::vector<SectionPoint>> PitchBuilder::exact_row(const ToothSection& se
   points.reserve(columns_.size());
   for (const GridColumn& c : columns_) {
     const auto p = section.point(c.segment, shift == 0 ? c.from : c.from + shift * (c.to - c.from));
-    if (!p)
-      return fail("{} is not defined at radius {:.4f} mm", patch_name(segment_patch(c.segment)), section.radius());
+    if (!p) return fail("{} is not defined at radius {:.4f} mm", to_string(segment_patch(c.segment)), section.radius());
     points.push_back(*p);
   }
   return points;
@@ -127,7 +126,7 @@ void PitchBuilder::add_triangle(Index a, Index b, Index c, const TriangleTag& ta
 void PitchBuilder::add_surface_strip(const RingRows& ring, std::size_t strip, std::uint8_t zone) {
   const Row &in = ring.rows[strip], &out = ring.rows[strip + 1];
   for (std::size_t j = 0; j < columns_.size(); ++j) {
-    const Patch patch = segment_patch(columns_[j].segment);
+    const Piece patch = segment_patch(columns_[j].segment);
     const std::size_t u = columns_[j].slot;
     const Index i00 = in.index[j], i01 = in.index[j + 1], i10 = out.index[j], i11 = out.index[j + 1];
     if (ring.falling[strip][j]) {
@@ -141,7 +140,7 @@ void PitchBuilder::add_surface_strip(const RingRows& ring, std::size_t strip, st
 }
 
 /// A strip of a cylinder or plane between two rows; the azimuth runs on from column to column.
-void PitchBuilder::add_plain_strip(const Row& from, const Row& to, Patch patch, std::uint8_t zone, bool v_is_z) {
+void PitchBuilder::add_plain_strip(const Row& from, const Row& to, Piece patch, std::uint8_t zone, bool v_is_z) {
   const auto coordinates = [&](const Row& row) {
     std::vector<Vec2> uv;
     double azimuth = std::atan2(at(row, 0).y(), at(row, 0).x());
@@ -205,9 +204,9 @@ Status PitchBuilder::build() {
     if (!(std::hypot(at(next, 0).x(), at(next, 0).y()) - std::hypot(at(end, 0).x(), at(end, 0).y()) > kSame_mm))
       return fail("groove width = 0 between ring {} and ring {}: a solid needs a gap", k, k + 1);
     const Row a = row_below(end, floor), b = row_below(next, floor);
-    add_plain_strip(end, a, Patch::end_face, zone, true);
-    add_plain_strip(a, b, Patch::groove, zone, false);
-    add_plain_strip(b, next, Patch::end_face, std::uint8_t(k + 1), true);
+    add_plain_strip(end, a, Piece::end, zone, true);
+    add_plain_strip(a, b, Piece::groove, zone, false);
+    add_plain_strip(b, next, Piece::end, std::uint8_t(k + 1), true);
   }
 
   const Row &inner = rings_.front().rows.front(), &outer = rings_.back().rows.back();
@@ -219,11 +218,11 @@ Status PitchBuilder::build() {
   };
   const Row outer_foot = foot_of(outer), outer_base = row_below(outer, z_base);
   const Row inner_base = row_below(inner, z_base), inner_foot = foot_of(inner);
-  add_plain_strip(outer, outer_foot, Patch::end_face, last, true);
-  add_plain_strip(outer_foot, outer_base, Patch::body, last, true);
-  add_plain_strip(outer_base, inner_base, Patch::body, 0, false);
-  add_plain_strip(inner_base, inner_foot, Patch::body, 0, true);
-  add_plain_strip(inner_foot, inner, Patch::end_face, 0, true);
+  add_plain_strip(outer, outer_foot, Piece::end, last, true);
+  add_plain_strip(outer_foot, outer_base, Piece::body, last, true);
+  add_plain_strip(outer_base, inner_base, Piece::body, 0, false);
+  add_plain_strip(inner_base, inner_foot, Piece::body, 0, true);
+  add_plain_strip(inner_foot, inner, Piece::end, 0, true);
   return Ok{};
 }
 
@@ -245,8 +244,8 @@ double PitchBuilder::distance_near(const RingRows& ring, std::size_t strip, std:
   return best;
 }
 
-Result<std::array<double, kPatchCount>> PitchBuilder::measure_sag(int n) const {
-  std::array<double, kPatchCount> sag{};
+Result<std::array<double, tooth_space::kSurfaces>> PitchBuilder::measure_sag(int n) const {
+  std::array<double, tooth_space::kSurfaces> sag{};
   for (std::size_t k = 0; k < rings_.size(); ++k) {
     const auto& radii = grid_.radii[k];
     std::optional<ToothSection> near;
@@ -269,9 +268,9 @@ Result<std::array<double, kPatchCount>> PitchBuilder::measure_sag(int n) const {
   }
   // The end faces are exact cylinders below outlines that are as good as the surfaces above them.
   const double surface = *std::max_element(sag.begin(), sag.end());
-  sag[std::size_t(Patch::end_face)] = std::max(surface, cylinder_sag_);
-  sag[std::size_t(Patch::body)] = cylinder_sag_;
-  if (rings_.size() > 1) sag[std::size_t(Patch::groove)] = cylinder_sag_;
+  sag[std::size_t(Piece::end)] = std::max(surface, cylinder_sag_);
+  sag[std::size_t(Piece::body)] = cylinder_sag_;
+  if (rings_.size() > 1) sag[std::size_t(Piece::groove)] = cylinder_sag_;
   for (double& s : sag) s *= kMargin;
   return sag;
 }

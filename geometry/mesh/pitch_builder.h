@@ -25,7 +25,7 @@ class PitchBuilder {
   Status build();
   /// Largest distance [mm] of exact points to the mesh with a margin of 15 %, by patch; n x n points a cell. After
   /// `build`.
-  Result<std::array<double, kPatchCount>> measure_sag(int n) const;
+  Result<std::array<double, tooth_space::kSurfaces>> measure_sag(int n) const;
   ToothMesh take() { return std::move(out_); }
 
  private:
@@ -46,7 +46,7 @@ class PitchBuilder {
   Row row_below(const Row& profile, double z);
   void add_triangle(std::int32_t a, std::int32_t b, std::int32_t c, const TriangleTag& tag);
   void add_surface_strip(const RingRows& ring, std::size_t strip, std::uint8_t zone);
-  void add_plain_strip(const Row& from, const Row& to, Patch patch, std::uint8_t zone, bool v_is_z);
+  void add_plain_strip(const Row& from, const Row& to, Piece patch, std::uint8_t zone, bool v_is_z);
   Status check_no_overhang(const Row& row, double r) const;
   double distance_near(const RingRows& ring, std::size_t strip, std::size_t column, const Vec3& p, double enough) const;
   const Vec3& at(const Row& row, std::size_t j) const { return out_.mesh.vertices[std::size_t(row.index[j])]; }

@@ -90,7 +90,7 @@ Result<GridPlanner> GridPlanner::probe(const face_gear::FaceGear& gear) {
         std::vector<Vec3> line;
         for (std::size_t j = 0; j < kProbes; ++j) {
           const auto point = near->point(s, double(j) / double(kProbes - 1));
-          if (!point) return fail("{} is not defined at radius {:.4f} mm", patch_name(segment_patch(s)), r);
+          if (!point) return fail("{} is not defined at radius {:.4f} mm", to_string(segment_patch(s)), r);
           line.push_back(point->p);
         }
         lines[s].push_back(std::move(line));

@@ -20,17 +20,6 @@ constexpr std::size_t idx(Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-const char* patch_name(Patch patch) {
-  constexpr std::array<const char*, kPatchCount> kNames{"flank +1", "fillet +1", "root",   "fillet -1", "flank -1",
-                                                        "tip",      "end face",  "groove", "body"};
-  return kNames[std::size_t(patch)];
-}
-
-int patch_side(Patch patch) {
-  if (patch == Patch::flank_plus || patch == Patch::fillet_plus) return 1;
-  return patch == Patch::flank_minus || patch == Patch::fillet_minus ? -1 : 0;
-}
-
 double ToothMesh::max_sag() const { return *std::max_element(max_sag_mm.begin(), max_sag_mm.end()); }
 
 Vec3 ToothMesh::vertex_of_copy(std::size_t index, int k) const {
@@ -123,43 +112,38 @@ double signed_volume(const TriangleMesh& mesh) {
 }
 
 std::optional<face_gear::SurfacePointT<double>> exact_patch_point(const face_gear::FaceGear& gear, int zone,
-                                                                  Patch patch, const Vec2& uv) {
+                                                                  Piece patch, const Vec2& uv) {
   const auto& f = gear.rings()[std::size_t(zone)].surface;
-  const int teeth = gear.parameters().teeth, s = patch_side(patch);
+  const int teeth = gear.parameters().teeth, s = side_of(patch);
   const auto placed = [&](const Vec3& p, const Vec3& n) {
     return face_gear::SurfacePointT<double>{turned_by_pitches(p, s < 0 ? 1 : 0, teeth),
                                             turned_by_pitches(n, s < 0 ? 1 : 0, teeth)};
   };
   if (gear.rings()[std::size_t(zone)].modification && s != 0) {
-    using Piece = face_gear::SpacePiece;
-    const bool flank = patch == Patch::flank_plus || patch == Patch::flank_minus;
-    const auto at = gear.drawn(std::size_t(zone))
-                        .point(flank ? (s > 0 ? Piece::flank_plus : Piece::flank_minus)
-                                     : (s > 0 ? Piece::fillet_plus : Piece::fillet_minus),
-                               uv.x(), uv.y());
+    const auto at = gear.drawn(std::size_t(zone)).point(patch, uv.x(), uv.y());
     if (!at) return {};
     return face_gear::SurfacePointT<double>{at->p, at->n};
   }
   switch (patch) {
-    case Patch::flank_plus:
-    case Patch::flank_minus: {
+    case Piece::flank_plus:
+    case Piece::flank_minus: {
       const auto at = f.flank(s, uv.x(), uv.y());
       return placed(at.p, at.n);
     }
-    case Patch::fillet_plus:
-    case Patch::fillet_minus: {
+    case Piece::fillet_plus:
+    case Piece::fillet_minus: {
       const auto at = f.fillet(s, uv.x(), uv.y());
       if (!at.defined) return {};
       return placed(at.p, at.n);
     }
-    case Patch::root: {
+    case Piece::root: {
       const Vec3 left = f.fillet(1, f.shaper.A_e, uv.y()).p;
       const Vec3 right = turned_by_pitches(f.fillet(-1, f.shaper.A_e, uv.y()).p, 1, teeth);
       const Vec3 p = turned(left, uv.x() * angle_from_to(left, right));
       const auto meridian = f.root_meridian(uv.y());
       return face_gear::SurfacePointT<double>{p, turned(meridian.n, angle_from_to(meridian.p, p))};
     }
-    case Patch::tip: {
+    case Piece::tip: {
       const double r = uv.y(), Z = std::sqrt(r * r - f.E * f.E), slope = -f.Cg / f.Sg * r / Z;
       const Vec3 radial(std::cos(uv.x()), std::sin(uv.x()), 0);
       return face_gear::SurfacePointT<double>{r * radial + f.z_tip(r) * Vec3::UnitZ(),

@@ -15,34 +15,19 @@
 
 #include "geometry/face_gear/gear.h"
 #include "geometry/mesh/triangle_mesh.h"
+#include "geometry/tooth_space/piece.h"
 
 namespace toothpath::mesh {
 
-/// Which surface a triangle belongs to.
-enum class Patch : std::uint8_t {
-  flank_plus,    ///< side +1 of tooth 0; (u, v) = (theta, B)
-  fillet_plus,   ///< its fillet; (u, v) = (A, Z)
-  root,          ///< root land; (u, v) = (fraction of its width from the +1 edge, Z)
-  fillet_minus,  ///< fillet of flank_minus; (u, v) = (A, Z)
-  flank_minus,   ///< side -1 of tooth 1; (u, v) = (theta, B)
-  tip,           ///< tip surface; (u, v) = (azimuth, r)
-  end_face,      ///< cylinder at an end of a ring of teeth; (u, v) = (azimuth, z)
-  groove,        ///< flat floor between two rings; (u, v) = (azimuth, r)
-  body,          ///< underside and the cylinders below the teeth; (u, v) = (azimuth, z or r)
-};
-inline constexpr std::size_t kPatchCount = 9;
+using tooth_space::Piece;
 
-/// "flank +1", "fillet +1", "root", "fillet -1", "flank -1", "tip", "end face", "groove", "body".
-[[nodiscard]] const char* patch_name(Patch patch);
-
-/// Side s of a flank or fillet patch: +1 or -1; 0 for the others.
-[[nodiscard]] int patch_side(Patch patch);
-
-/// What a triangle is part of, and where its corners lie on that surface.
+/// What a triangle is part of, and where its corners lie on that surface: (theta, B) of flanks, (A, Z) of fillets,
+/// (fraction of its width from the +1 edge, Z) of the root land, (azimuth, r) of tip surface and groove floor,
+/// (azimuth, z) of end faces, (azimuth, z or r) of the underside and the cylinders below the teeth.
 struct TriangleTag {
-  Patch patch = Patch::body;
+  Piece patch = Piece::body;
   std::uint8_t zone = 0;  ///< ring, from the inside; the groove floor counts to the ring inside it
-  std::array<Vec2, 3> uv{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};  ///< see `Patch`; in the order of the corners
+  std::array<Vec2, 3> uv{Vec2::Zero(), Vec2::Zero(), Vec2::Zero()};  ///< in the order of the corners
 };
 
 /// One angular pitch. Open along the two borders in the middle of the top lands, where the next pitch joins.
@@ -54,8 +39,8 @@ struct ToothMesh {
   int teeth = 0;            ///< N_2
   double tolerance_mm = 0;  ///< as asked
   /// Largest distance between the facets of a patch and its exact surface: measured on a dense sample, with a margin
-  /// of 15 %. Index with static_cast<std::size_t>(Patch).
-  std::array<double, kPatchCount> max_sag_mm{};
+  /// of 15 %. Index with static_cast<std::size_t>(Piece).
+  std::array<double, tooth_space::kSurfaces> max_sag_mm{};
 
   [[nodiscard]] double max_sag() const;
   /// Vertex `index` of copy k (the pitch that holds space k). Vertices shared by neighbouring copies, also by the last
@@ -84,6 +69,6 @@ struct ToothMesh {
 /// Exact point and normal of a flank, fillet, root or tip patch of space 0 at patch coordinates (u, v); nothing for the
 /// other patches and where the fillet is not defined.
 [[nodiscard]] std::optional<face_gear::SurfacePointT<double>> exact_patch_point(const face_gear::FaceGear& gear,
-                                                                                int zone, Patch patch, const Vec2& uv);
+                                                                                int zone, Piece patch, const Vec2& uv);
 
 }  // namespace toothpath::mesh

@@ -31,10 +31,10 @@ std::optional<double> continued_B(const face_gear::SpaceSheet& sheet, int s, dou
 
 }  // namespace
 
-Patch segment_patch(std::size_t segment) {
-  constexpr std::array<Patch, kSegmentCount> kPatches{Patch::tip,  Patch::flank_plus,   Patch::fillet_plus,
-                                                      Patch::root, Patch::fillet_minus, Patch::flank_minus,
-                                                      Patch::tip};
+Piece segment_patch(std::size_t segment) {
+  constexpr std::array<Piece, kSegmentCount> kPatches{Piece::tip,  Piece::flank_plus,   Piece::fillet_plus,
+                                                      Piece::root, Piece::fillet_minus, Piece::flank_minus,
+                                                      Piece::tip};
   return kPatches[segment];
 }
 

@@ -14,9 +14,9 @@ namespace toothpath::mesh {
 enum class Segment : std::uint8_t { land_left, flank_plus, fillet_plus, root, fillet_minus, flank_minus, land_right };
 inline constexpr std::size_t kSegmentCount = 7;
 
-[[nodiscard]] Patch segment_patch(std::size_t segment);
+[[nodiscard]] Piece segment_patch(std::size_t segment);
 
-/// A point of the outline and its patch coordinates (see `Patch`).
+/// A point of the outline and its patch coordinates (see `Piece`).
 struct SectionPoint {
   Vec3 p = Vec3::Zero();
   Vec2 uv = Vec2::Zero();

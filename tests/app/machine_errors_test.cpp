@@ -68,7 +68,7 @@ class Flanks : public ::testing::Test {
     ASSERT_EQ(nominal.size(), real.size());
     int points = 0;
     for (std::size_t g = 0; g < real.size(); ++g) {
-      if (proof::region_of(real[g].patch) != path::Region::flank) continue;
+      if (path::region_of(real[g].patch) != path::Region::flank) continue;
       for (std::size_t k = 0; k < real[g].points.size(); ++k) {
         if (real[g].reachable[k] == 0) continue;
         const double change = double(real[g].excess_um.back()[k]) - double(nominal[g].excess_um.back()[k]);
@@ -96,7 +96,7 @@ TEST_F(Flanks, WithoutErrorsTheNumbersOfTheProof) {
   double least = INFINITY, most = -INFINITY;
   for (const auto& grid : made->run.surface)
     for (std::size_t k = 0; k < grid.points.size(); ++k)
-      if (proof::region_of(grid.patch) == path::Region::flank && grid.reachable[k] != 0) {
+      if (path::region_of(grid.patch) == path::Region::flank && grid.reachable[k] != 0) {
         least = std::min(least, double(grid.excess_um.back()[k]));
         most = std::max(most, double(grid.excess_um.back()[k]));
       }
@@ -157,7 +157,7 @@ TEST_F(Flanks, SquarenessByTheHeightOfThePlace) {
   double most = 0;  // of X by z, across the flanks: by hand, um
   for (const auto& grid : made->run.surface)
     for (std::size_t k = 0; k < grid.points.size(); ++k)
-      if (proof::region_of(grid.patch) == path::Region::flank && grid.reachable[k] != 0)
+      if (path::region_of(grid.patch) == path::Region::flank && grid.reachable[k] != 0)
         most = std::max(most, std::abs(grid.points[k].z() * grid.normals[k].x()));
   EXPECT_GT(one->shift_um, 0.01);
   EXPECT_LT(one->shift_um, most + 8 * cusp_slope());

@@ -104,7 +104,7 @@ TEST(LengthTolerance, NoPlaceIsMovedByMoreThanItsShare) {
   job.operations = {finishing};
   // A valley: normals from 20 to 160 deg about the y axis.
   proof::SurfaceGrid grid;
-  grid.patch = proof::Patch::flank_plus;
+  grid.patch = tooth_space::Piece::flank_plus;
   for (int i = 0; i <= 60; ++i) {
     const double angle = radians(20 + i);  // one flank: to 80 deg
     grid.normals.emplace_back(std::cos(angle), 0, std::sin(angle));
@@ -139,7 +139,7 @@ TEST(LengthTolerance, NoPlaceIsMovedByMoreThanItsShare) {
   EXPECT_LE(highest, (0.004 + 0.002 + 0.001 - 0.004) * 1.01);
   EXPECT_GT(highest, 0.98 * (0.004 + 0.002 + 0.001 - 0.004));
   // A corner that the ball does not reach does not count; a root that the tip faces does.
-  grid.patch = proof::Patch::root;
+  grid.patch = tooth_space::Piece::root;
   grid.normals.push_back(axis);
   grid.points.push_back(Vec3::Zero());
   grid.reachable.push_back(0);

@@ -260,7 +260,7 @@ class FaceProcess final : public process::GearProcess {
         mesh::join_copies(*pitch), {}, [root = gear_.lowest_root()](const Vec3& p) { return p.z() > root; }};
     out.teeth.resize(out.mesh.vertices.size());
     for (std::size_t t = 0; t < out.mesh.triangles.size(); ++t)
-      if (pitch->tags[t % pitch->tags.size()].patch != mesh::Patch::body)
+      if (pitch->tags[t % pitch->tags.size()].patch != tooth_space::Piece::body)
         for (const auto vertex : out.mesh.triangles[t]) out.teeth[static_cast<std::size_t>(vertex)] = true;
     return out;
   }

@@ -15,7 +15,7 @@ constexpr double kVtpSag = 0.002;  // mm
 
 /// Number of the patch that the first triangle at each vertex belongs to.
 std::vector<double> patch_of_vertices(const mesh::ToothMesh& pitch) {
-  std::vector<double> field(pitch.mesh.vertices.size(), static_cast<double>(mesh::kPatchCount));
+  std::vector<double> field(pitch.mesh.vertices.size(), static_cast<double>(tooth_space::kSurfaces));
   for (std::size_t t = pitch.tags.size(); t-- > 0;)
     for (const auto vertex : pitch.mesh.triangles[t])
       field[static_cast<std::size_t>(vertex)] = static_cast<double>(pitch.tags[t].patch);

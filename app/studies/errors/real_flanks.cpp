@@ -64,7 +64,7 @@ Result<std::unique_ptr<RealFlanks>> RealFlanks::make(flow::Run& run, const proof
 RealFlanks::Points RealFlanks::points_of(const std::vector<proof::SurfaceGrid>& surface) {
   Points out;
   for (const auto& grid : surface) {
-    if (proof::region_of(grid.patch) != path::Region::flank || grid.excess_um.empty()) continue;
+    if (path::region_of(grid.patch) != path::Region::flank || grid.excess_um.empty()) continue;
     const auto& excess = grid.excess_um.back();
     out.excess_um.insert(out.excess_um.end(), excess.begin(), excess.end());
     for (std::size_t k = 0; k < excess.size(); ++k)

@@ -61,8 +61,9 @@ Foot surface(int patch, double t, double r) {
   return out;
 }
 
-constexpr proof::Patch kPatches[] = {proof::Patch::flank_minus, proof::Patch::fillet_minus, proof::Patch::root,
-                                     proof::Patch::fillet_plus, proof::Patch::flank_plus};
+constexpr tooth_space::Piece kPatches[] = {tooth_space::Piece::flank_minus, tooth_space::Piece::fillet_minus,
+                                           tooth_space::Piece::root, tooth_space::Piece::fillet_plus,
+                                           tooth_space::Piece::flank_plus};
 constexpr double kZone[2][2] = {{66, 76}, {80, 90}};
 
 proof::SurfaceGrid grid(int zone, int patch, int fields) {

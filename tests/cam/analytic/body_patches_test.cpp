@@ -109,18 +109,18 @@ void expect_hulls_hold(const analytic::GearDistance& part) {
       const analytic::BodyHull hull = patches.outline(cell, q);
       double low = INFINITY;
       for (std::size_t n = 0; n < hull.count; ++n) low = std::min(low, g.dot(hull.corner[n].p));
-      const bool cut = patches.surface(cell) == analytic::BodySurface::sheet &&
-                       !(q.stands[0] && q.stands[1] && q.stands[2] && q.stands[3]);
+      const bool cut = patches.surface(cell).sheet() && !(q.stands[0] && q.stands[1] && q.stands[2] && q.stands[3]);
       if (cut) continue;  // a place that was moved to a border may belong to a quad beside it
-      EXPECT_GE(g.dot(*p), low - patches.above(cell, q, g) - 1e-11) << patches.name(cell) << " " << k;
+      EXPECT_GE(g.dot(*p), low - patches.above(cell, q, g) - 1e-11)
+          << to_string(patches.surface(cell).piece) << " " << k;
       const analytic::BodyBox& box = patches.box(cell);
       for (const Vec3& along : {g, Vec3(box.a.cross(box.b).normalized())})
-        EXPECT_TRUE(box_holds(box, *p, along)) << patches.name(cell) << " " << k;
+        EXPECT_TRUE(box_holds(box, *p, along)) << to_string(patches.surface(cell).piece) << " " << k;
       least = std::min(least, g.dot(*p) - low + patches.above(cell, q, g));
       // Bilinear weights stand for the hull; a quad that is no parallelogram lies beside them by less than its second
       // differences.
       const double skew = 0.25 * (q.corner[0] - q.corner[1] + q.corner[2] - q.corner[3]).norm();
-      if (patches.surface(cell) == analytic::BodySurface::sheet) {
+      if (patches.surface(cell).sheet()) {
         EXPECT_LE((*p - mixed(q.corner)).norm(), patches.sag(cell, q) + 2 * skew + 1e-9);
       }
     }
@@ -183,7 +183,7 @@ TEST_P(Patches, SettledPlacesLieOnTheSolid) {
       const auto p = patches.settled(cell, 0.25 * (q.at[0] + q.at[1] + q.at[2] + q.at[3]));
       if (!p || p->z() < gear.lowest_root() - 0.2 * gear.parameters().module_mm)
         continue;  // far down an end: not sampled there
-      EXPECT_LE(brute.nearest(*p).distance, 5e-6) << patches.name(cell) << " " << p->transpose();
+      EXPECT_LE(brute.nearest(*p).distance, 5e-6) << to_string(patches.surface(cell).piece) << " " << p->transpose();
     }
   }
 }

@@ -37,7 +37,7 @@ TEST(Proof, SinglePrecisionFacetsWouldMissAMicrometre) {
   int missed = 0, asked = 0;
   for (int k = 0; k < 4000 && asked < 60; ++k) {
     const std::size_t t = random.index(pitch->tags.size());
-    if (pitch->tags[t].patch != mesh::Patch::flank_plus && pitch->tags[t].patch != mesh::Patch::flank_minus) continue;
+    if (!is_flank(pitch->tags[t].patch)) continue;
     const auto& uv = pitch->tags[t].uv;
     const auto q =
         mesh::exact_patch_point(gear, pitch->tags[t].zone, pitch->tags[t].patch, (uv[0] + uv[1] + uv[2]) / 3);

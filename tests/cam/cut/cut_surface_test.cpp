@@ -87,8 +87,8 @@ TEST(CutSurface, TheBoundHoldsAlongTheNormal) {
     double highest = 0;
     for (const double share : {0.0, 0.07, 0.31, 0.55, 0.83, 1.0}) {
       const double r = places.radius(share);
-      for (int piece = 0; piece < face_gear::kSpacePieces; ++piece) {
-        const auto [from, to] = places.range(face_gear::SpacePiece(piece), r);
+      for (int piece = 0; piece < tooth_space::kPieces; ++piece) {
+        const auto [from, to] = places.range(tooth_space::Piece(piece), r);
         for (int k = 0; k <= 500; ++k) {
           const auto s = places.at(from + (to - from) * k / 500, r);
           if (!s) continue;

@@ -17,7 +17,7 @@ struct DensePoint {
 std::vector<DensePoint> points_of(const test::BruteForceGearSolid& solid, int zone, int rows, int columns,
                                   bool normals) {
   std::vector<DensePoint> out;
-  for (int patch = 0; patch < face_gear::kSpacePieces; ++patch)
+  for (int patch = 0; patch < tooth_space::kPieces; ++patch)
     for (int i = 0; i < rows; ++i)
       for (int j = 0; j < columns; ++j) {
         // The normals are differences of points on both sides.

@@ -81,7 +81,7 @@ double face_gear_distance(const face_gear::FaceGear& gear, const NamedPatch& pat
     return d ? std::abs(d->distance) : miss;
   }
   if (patch.strip.starts_with("fillet")) {
-    const auto piece = s > 0 ? face_gear::SpacePiece::fillet_plus : face_gear::SpacePiece::fillet_minus;
+    const auto piece = tooth_space::fillet_of(s);
     const Vec3 in_space = turned(p, (s > 0 ? -patch.tooth : 1 - patch.tooth) * gear.pitch());
     double best = miss;
     for (int k = 0; k <= 8; ++k) {  // starts all along the rounding

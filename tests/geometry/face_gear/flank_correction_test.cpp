@@ -129,8 +129,7 @@ TEST_P(CorrectedSheet, DisplacesTheGridByMinusTheDeviation) {
   const face_gear::SpaceSheet sheet(gear.parameters(), gear.rings()[0]);
   const auto grid = inspection::inspection_grid(nominal);
   for (const auto& p : *grid) {
-    const auto q =
-        sheet.at(p.side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus, p.theta, p.B);
+    const auto q = sheet.at(tooth_space::flank_of(p.side), p.theta, p.B);
     ASSERT_TRUE(q);
     const Vec3 at = p.side > 0 ? q->p : turned(q->p, -nominal.pitch());
     const double x = double(p.row) / 4, y = double(p.column) / 8, wanted = p.side > 0 ? -rough(x, y) : rough(y, x);
@@ -151,8 +150,7 @@ TEST_P(CorrectedSheet, NormalsAndDerivativesAreThoseOfThePoints) {
   for (int k = 0; k < 200; ++k) {
     const bool flank = k % 2 == 0;
     const int side = k % 4 < 2 ? 1 : -1;
-    const auto piece = flank ? (side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus)
-                             : (side > 0 ? face_gear::SpacePiece::fillet_plus : face_gear::SpacePiece::fillet_minus);
+    const auto piece = flank ? tooth_space::flank_of(side) : tooth_space::fillet_of(side);
     const double u = flank ? between(0.1, f.shaper.theta_t) : between(f.shaper.A_t, f.shaper.A_e);
     const double v = flank ? side * between(0.3, 0.6) : (between(132, 142) + f.shaper.r_p * f.Cg) / f.Sg;
     const double h = 1e-5, g = flank ? 1e-5 : 1e-3;
@@ -179,8 +177,8 @@ TEST_P(CorrectedSheet, FlankFilletAndRootJoinSmoothly) {
   const face_gear::SpaceSheet sheet(gear.parameters(), gear.rings()[0]);
   const auto& f = gear.rings()[0].surface;
   for (const int side : {1, -1}) {
-    const auto fillet = side > 0 ? face_gear::SpacePiece::fillet_plus : face_gear::SpacePiece::fillet_minus;
-    const auto flank = side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus;
+    const auto fillet = tooth_space::fillet_of(side);
+    const auto flank = tooth_space::flank_of(side);
     for (double radius = 132; radius <= 143.5; radius += 0.77) {
       const double Z = (std::sqrt(radius * radius - f.E * f.E) + f.shaper.r_p * f.Cg) / f.Sg;
       const auto g = f.fillet(side, f.shaper.A_t, Z);
@@ -189,8 +187,7 @@ TEST_P(CorrectedSheet, FlankFilletAndRootJoinSmoothly) {
       ASSERT_TRUE(a && b);
       EXPECT_LT((a->p - b->p).norm(), 1e-8);
       EXPECT_LT((a->n - b->n).norm(), 1e-6);
-      const auto e = sheet.at(fillet, f.shaper.A_e, Z),
-                 r = sheet.at(face_gear::SpacePiece::root, side > 0 ? 0.0 : 1.0, Z);
+      const auto e = sheet.at(fillet, f.shaper.A_e, Z), r = sheet.at(tooth_space::Piece::root, side > 0 ? 0.0 : 1.0, Z);
       ASSERT_TRUE(e && r);
       EXPECT_LT((e->p - r->p).norm(), 1e-9);
       EXPECT_LT((e->n - r->n).norm(), 1e-9);
@@ -207,10 +204,7 @@ TEST_P(CorrectedSheet, TipEdgeLiesOnTheTipSurface) {
     for (const double r : {131.5, 135.0, 144.0}) {
       const auto tip = sheet.tip(side, r), before = plain.tip(side, r);
       ASSERT_TRUE(tip && before);
-      auto p = sheet
-                   .at(side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus, tip->at.theta,
-                       tip->at.B)
-                   ->p;
+      auto p = sheet.at(tooth_space::flank_of(side), tip->at.theta, tip->at.B)->p;
       if (side < 0) p = turned(p, -nominal.pitch());
       EXPECT_NEAR(std::hypot(p.x(), p.y()), r, 1e-9);
       EXPECT_NEAR(p.z(), gear.rings()[0].surface.z_tip(r), 1e-9);

@@ -13,7 +13,7 @@ class Sheet : public testing::TestWithParam<std::string> {
 
   /// A place of a piece well on the ring.
   struct Place {
-    face_gear::SpacePiece piece;
+    tooth_space::Piece piece;
     double u, v;
   };
   static std::vector<Place> places(const face_gear::OffsetSheet& sheet, unsigned seed, int count) {
@@ -36,8 +36,7 @@ TEST_P(Sheet, DerivativesAgainstDifferences) {
     for (const auto& at : places(surface_of(space), 3, 120)) {
       const auto q = space.at(at.piece, at.u, at.v);
       ASSERT_TRUE(q);
-      const bool angle_v =
-          at.piece == face_gear::SpacePiece::flank_plus || at.piece == face_gear::SpacePiece::flank_minus;
+      const bool angle_v = is_flank(at.piece);
       const double hu = 1e-5, hv = angle_v ? 1e-5 : 1e-4;
       const auto u1 = space.point(at.piece, at.u + hu, at.v), u0 = space.point(at.piece, at.u - hu, at.v);
       const auto v1 = space.point(at.piece, at.u, at.v + hv), v0 = space.point(at.piece, at.u, at.v - hv);
@@ -70,8 +69,7 @@ TEST_P(Sheet, FootReturnsToTheSurfacePoint) {
                    k_v = face_gear::SpaceSheet::normal_curvature(*q, q->n.cross(q->pu));
       const double hollow = std::max({-k_u, -k_v, 1e-9}) * 1.5;
       const double d = random(-0.2, 1) * std::min(0.5 * m, 0.5 / hollow);
-      const bool angle_v =
-          at.piece == face_gear::SpacePiece::flank_plus || at.piece == face_gear::SpacePiece::flank_minus;
+      const bool angle_v = is_flank(at.piece);
       const double u = at.u + random(-0.02, 0.02), v = at.v + random(-1, 1) * (angle_v ? 0.002 : 0.1);
       const auto foot = space.foot(at.piece, q->p + d * q->n, u, v);
       ASSERT_TRUE(foot) << to_string(at.piece);
@@ -88,11 +86,9 @@ TEST_P(Sheet, CurvatureOfFlanksAndFillets) {
     const face_gear::SpaceSheet space(gear.parameters(), ring);
     const auto& f = ring.surface;
     for (const auto& at : places(surface_of(space), 21, 120)) {
-      if (at.piece == face_gear::SpacePiece::root) continue;
-      const bool flank =
-          at.piece == face_gear::SpacePiece::flank_plus || at.piece == face_gear::SpacePiece::flank_minus;
-      const int side =
-          at.piece == face_gear::SpacePiece::flank_plus || at.piece == face_gear::SpacePiece::fillet_plus ? 1 : -1;
+      if (at.piece == tooth_space::Piece::root) continue;
+      const bool flank = is_flank(at.piece);
+      const int side = side_of(at.piece);
       const auto q = space.at(at.piece, at.u, at.v);
       const auto H = flank ? f.flank_shape(side, at.u, at.v) : f.fillet_shape(side, at.u, at.v);
       const auto basis = flank ? f.flank_basis(side, at.u, at.v) : f.fillet_basis(side, at.u, at.v);
@@ -115,7 +111,7 @@ TEST_P(Sheet, PiecesJoinSmoothly) {
     const face_gear::OffsetSheet sheet = surface_of(space);
     for (double y = 0.05; y < 1; y += 0.1) {
       const double r = sheet.r_from() + y * (sheet.r_to() - sheet.r_from());
-      for (int joint = 1; joint < face_gear::kSpacePieces; ++joint) {
+      for (int joint = 1; joint < tooth_space::kPieces; ++joint) {
         const auto a = sheet.raw(joint - 1e-12, r), b = sheet.raw(joint, r);
         ASSERT_TRUE(a && b);
         EXPECT_NE(a->piece, b->piece);

@@ -49,7 +49,7 @@ inline mesh::ToothMesh meshed(const face_gear::FaceGear& gear, double tolerance_
   return *std::move(mesh);
 }
 
-inline bool is_exact_patch(mesh::Patch p) { return p <= mesh::Patch::tip; }
+inline bool is_exact_patch(tooth_space::Piece p) { return p <= tooth_space::Piece::tip; }
 
 inline std::string sample_name(const testing::TestParamInfo<MeshSample>& info) { return info.param.name; }
 

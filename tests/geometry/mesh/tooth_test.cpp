@@ -41,17 +41,17 @@ TEST_P(MeshTooth, CornersLieOnTheSurfaceThatTheirTagNames) {
       const double r = std::hypot(p.x(), p.y());
       if (is_exact_patch(tag.patch)) {
         const auto exact = mesh::exact_patch_point(gear_, tag.zone, tag.patch, tag.uv[k]);
-        ASSERT_TRUE(exact) << mesh::patch_name(tag.patch);
-        ASSERT_LE((exact->p - p).norm(), 1e-9) << mesh::patch_name(tag.patch) << " uv " << tag.uv[k].transpose();
+        ASSERT_TRUE(exact) << to_string(tag.patch);
+        ASSERT_LE((exact->p - p).norm(), 1e-9) << to_string(tag.patch) << " uv " << tag.uv[k].transpose();
         ASSERT_GE(r, zone.inner_radius_mm - 1e-9);
         ASSERT_LE(r, zone.outer_radius_mm + 1e-9);
       } else {
         ASSERT_NEAR(std::remainder(tag.uv[k].x() - std::atan2(p.y(), p.x()), 2 * kPi), 0, 1e-12);
         const double to_end = std::min(std::abs(r - zone.inner_radius_mm), std::abs(r - zone.outer_radius_mm));
-        if (tag.patch == mesh::Patch::end_face) {
+        if (tag.patch == tooth_space::Piece::end) {
           ASSERT_LE(to_end, 1e-9);
           ASSERT_NEAR(tag.uv[k].y(), p.z(), 0);
-        } else if (tag.patch == mesh::Patch::groove) {
+        } else if (tag.patch == tooth_space::Piece::groove) {
           ASSERT_NEAR(p.z(), gear_.groove_floor(), 1e-9);
         }
       }
@@ -66,18 +66,18 @@ TEST_P(MeshTooth, SweptShaperTouchesTheVerticesAndCutsJustAboveThem) {
   std::size_t tested = 0;
   for (std::size_t t = 0; t < mesh_.tags.size(); t += 13) {
     const mesh::TriangleTag& tag = mesh_.tags[t];
-    if (!is_exact_patch(tag.patch) || tag.patch == mesh::Patch::tip) continue;
+    if (!is_exact_patch(tag.patch) || tag.patch == tooth_space::Piece::tip) continue;
     // Inside the base circle the tip corner belongs to no involute.
-    const bool flank = tag.patch == mesh::Patch::flank_plus || tag.patch == mesh::Patch::flank_minus;
+    const bool flank = is_flank(tag.patch);
     if (flank && tag.uv[0].x() < 1e-3) continue;
     const BruteForceFaceGear& oracle = oracles[tag.zone];
     const Vec3& p = mesh_.mesh.corner(t, 0);
     const Vec3 normal = mesh_.mesh.area_normal(t).normalized();
-    EXPECT_NEAR(oracle.least_clearance(p), 0, 1e-7) << mesh::patch_name(tag.patch) << " at " << p.transpose();
+    EXPECT_NEAR(oracle.least_clearance(p), 0, 1e-7) << to_string(tag.patch) << " at " << p.transpose();
     const Vec3 centre = (p + mesh_.mesh.corner(t, 1) + mesh_.mesh.corner(t, 2)) / 3;
     const double step = mesh_.max_sag_mm[std::size_t(tag.patch)] + 0.02;
-    EXPECT_LT(oracle.least_clearance(centre + step * normal), 0) << mesh::patch_name(tag.patch);
-    EXPECT_GT(oracle.least_clearance(centre - step * normal), 0) << mesh::patch_name(tag.patch);
+    EXPECT_LT(oracle.least_clearance(centre + step * normal), 0) << to_string(tag.patch);
+    EXPECT_GT(oracle.least_clearance(centre - step * normal), 0) << to_string(tag.patch);
     ++tested;
   }
   EXPECT_GT(tested, 8u);
@@ -95,7 +95,7 @@ TEST_P(MeshTooth, FacetNormalsFollowTheExactNormals) {
     if (area.norm() / longest < 4 * mesh_.max_sag_mm[std::size_t(tag.patch)]) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto exact = mesh::exact_patch_point(gear_, tag.zone, tag.patch, tag.uv[k]);
-      ASSERT_GT(area.normalized().dot(exact->n), 0.8) << mesh::patch_name(tag.patch) << " uv " << tag.uv[k].transpose();
+      ASSERT_GT(area.normalized().dot(exact->n), 0.8) << to_string(tag.patch) << " uv " << tag.uv[k].transpose();
     }
   }
 }
@@ -104,7 +104,7 @@ TEST_P(MeshTooth, FacetNormalsFollowTheExactNormals) {
 TEST_P(MeshTooth, SagStaysBelowTheStatedBound) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
-  std::array<double, mesh::kPatchCount> seen{};
+  std::array<double, tooth_space::kSurfaces> seen{};
   const auto& m = mesh_.mesh;
   for (std::size_t t = 0; t < mesh_.tags.size(); t += 3) {
     const mesh::TriangleTag& tag = mesh_.tags[t];
@@ -128,16 +128,17 @@ TEST_P(MeshTooth, SagStaysBelowTheStatedBound) {
       ASSERT_TRUE(exact);
       const double r = std::hypot(exact->p.x(), exact->p.y());
       if (r < ring.zone.inner_radius_mm || r > ring.zone.outer_radius_mm) continue;
-      if (tag.patch != mesh::Patch::tip && exact->p.z() > ring.surface.z_tip(r)) continue;  // beyond the tip edge
+      if (tag.patch != tooth_space::Piece::tip && exact->p.z() > ring.surface.z_tip(r))
+        continue;  // beyond the tip edge
       double best = INFINITY;
       for (const std::size_t o : near)
         best = std::min(best, distance_to_triangle(exact->p, m.corner(o, 0), m.corner(o, 1), m.corner(o, 2)));
       seen[std::size_t(tag.patch)] = std::max(seen[std::size_t(tag.patch)], best);
     }
   }
-  for (std::size_t p = 0; p < mesh::kPatchCount; ++p) {
-    EXPECT_LE(seen[p], mesh_.max_sag_mm[p] + 1e-12) << mesh::patch_name(mesh::Patch(p));
-    EXPECT_LE(mesh_.max_sag_mm[p], mesh_.tolerance_mm) << mesh::patch_name(mesh::Patch(p));
+  for (std::size_t p = 0; p < tooth_space::kSurfaces; ++p) {
+    EXPECT_LE(seen[p], mesh_.max_sag_mm[p] + 1e-12) << to_string(tooth_space::Piece(p));
+    EXPECT_LE(mesh_.max_sag_mm[p], mesh_.tolerance_mm) << to_string(tooth_space::Piece(p));
   }
   const double worst_seen = *std::max_element(seen.begin(), seen.end());
   EXPECT_GT(worst_seen, 0.3 * mesh_.max_sag()) << "the bound is far above what is there";

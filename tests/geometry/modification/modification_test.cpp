@@ -204,8 +204,7 @@ TEST(ModifiedFlank, ValueNormalAndCurvatureMatchFiftyDigits) {
                        uv = exact(t + h, b + h) - exact(t + h, b - h) - exact(t - h, b + h) + exact(t - h, b - h);
       Vec3T<F50> n = Vec3T<F50>(u1 - u0).cross(Vec3T<F50>(v1 - v0));
       n = n / sqrt(F50(n.squaredNorm()));
-      const auto q =
-          sheet.at(side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus, theta, B);
+      const auto q = sheet.at(tooth_space::flank_of(side), theta, B);
       ASSERT_TRUE(q);
       const double turn = side > 0 ? 0 : -gear.pitch();
       const Vec3 at = turned(q->p, turn), out = turned(q->n, turn);
@@ -251,7 +250,7 @@ TEST(ModifiedFlank, FilletAndRootJoinSmoothlyAndTheFootIsFound) {
         const double Z = (std::sqrt(r * r - f.E * f.E) + f.shaper.r_p * f.Cg) / f.Sg;
         const auto g = f.fillet(side, f.shaper.A_t, Z);
         ASSERT_TRUE(g.defined);
-        using Piece = face_gear::SpacePiece;
+        using Piece = tooth_space::Piece;
         const auto flank = side > 0 ? Piece::flank_plus : Piece::flank_minus,
                    fillet = side > 0 ? Piece::fillet_plus : Piece::fillet_minus;
         const auto a = sheet.at(flank, f.shaper.theta_t, g.B), b = sheet.at(fillet, f.shaper.A_t, Z);
