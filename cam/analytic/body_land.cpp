@@ -6,8 +6,6 @@
 #include "cam/analytic/body_patches.h"
 
 namespace toothpath::analytic {
-namespace {}  // namespace
-
 double BodyPatches::edge_azimuth(int which, double r) const {
   const auto& t = ring_.table_r;
   const auto n = std::size_t(which);
@@ -18,10 +16,10 @@ double BodyPatches::edge_azimuth(int which, double r) const {
   if (a && b) {
     if (share == 0) return a->azimuth;
     if (share == 1) return b->azimuth;
-    face_gear::FlankCoordinates start = a->at;
-    start.theta += share * (b->at.theta - a->at.theta);
-    start.B += share * (b->at.B - a->at.B);
-    if (const auto place = space_.tip(which == 0 ? 1 : -1, r, start)) return place->azimuth;
+    tooth_space::EdgePlace start = *a;
+    start.u += share * (b->u - a->u);
+    start.v += share * (b->v - a->v);
+    if (const auto place = space_.tip_edge(which == 0 ? 1 : -1, r, start)) return place->azimuth;
   }
   return ring_.edge[n][k] + share * (ring_.edge[n][k + 1] - ring_.edge[n][k]);
 }
@@ -55,7 +53,7 @@ PatchBend BodyPatches::land_bend(double r_from, double r_to) {
     const Interval r(r_from, r_to), w = azimuth[0] - azimuth[1], w1 = edge[0]->slope - edge[1]->slope;
     const Interval A = hull(azimuth[0], azimuth[1]), A1 = hull(edge[0]->slope, edge[1]->slope),
                    A2 = hull(edge[0]->bend, edge[1]->bend);
-    const Interval c = cos(A), s = sin(A), z2 = bounds_.tip_surface_bend(r_from, r_to);
+    const Interval c = cos(A), s = sin(A), z2 = space_.tip_bend(r_from, r_to).bend;
     const auto placed = [&](const Interval& out, const Interval& side, const Interval& z) {
       return std::array<Interval, 3>{out * c - side * s, out * s + side * c, z};
     };

@@ -44,9 +44,8 @@ Arc arc_of(const BodyQuad& q) {
 
 }  // namespace
 
-BodyPatches::BodyPatches(const face_gear::FaceGearParameters& gear, const face_gear::SpaceSheet& space, BodyRing ring,
-                         std::size_t cells)
-    : space_(space), bounds_(gear, space), ring_(std::move(ring)), cells_(cells), boxes_(cells) {}
+BodyPatches::BodyPatches(const face_gear::SpaceSheet& space, BodyRing ring, std::size_t cells)
+    : space_(space), ring_(std::move(ring)), cells_(cells), boxes_(cells) {}
 
 void BodyPatches::add_block(tooth_space::Piece piece, const std::vector<SheetCell>& cells) {
   if (cells.empty()) return;
@@ -69,7 +68,7 @@ void BodyPatches::add_block(tooth_space::Piece piece, const std::vector<SheetCel
     }
   half_a *= 1 + 1e-12;
   half_b *= 1 + 1e-12;
-  if (const auto bend = bounds_.over(piece, block.frame, half_a, half_b)) {
+  if (const auto bend = patch_bend(space_, piece, block.frame, half_a, half_b)) {
     block.bend = *bend;
   } else if (cells.size() > 1) {
     for (const auto& c : cells) add_block(piece, {c});  // a smaller box may do
@@ -356,14 +355,7 @@ std::optional<Vec3> BodyPatches::settled_sheet(const Block& block, Vec2 uv) cons
     q = space_.point(piece, uv.x(), uv.y());
   }
   if (!q || lacks(q->p).cwiseAbs().maxCoeff() > 1e-7) return {};
-  const auto& w = space_.surface().shaper;
-  const double low = is_flank(piece)                     ? -INFINITY
-                     : piece == tooth_space::Piece::root ? 0
-                                                         : w.A_t,
-               high = is_flank(piece)                     ? w.theta_t
-                      : piece == tooth_space::Piece::root ? 1
-                                                          : w.A_e;
-  if (uv.x() < low - kStands || uv.x() > high + kStands) return {};
+  if (!space_.borders(piece).hold(uv.x(), kStands)) return {};
   return q->p;
 }
 

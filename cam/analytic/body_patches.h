@@ -54,7 +54,7 @@ struct BodyRing {
   double base_mm = 0;   ///< lower border of the end faces
   double floor_mm = 0;  ///< height of the groove floor
   std::vector<double> table_r;
-  std::array<std::vector<std::optional<face_gear::TipPlace>>, 2>
+  std::array<std::vector<std::optional<tooth_space::EdgePlace>>, 2>
       tip;  ///< plus and minus edge of tooth 0 over `table_r`
   std::array<std::vector<std::optional<CurveBend>>, 2>
       tip_bend;                             ///< of their azimuths, from place to place; none: not proven
@@ -71,8 +71,7 @@ class BodyPatches {
     std::array<Vec3, 4> corner;
   };
 
-  BodyPatches(const face_gear::FaceGearParameters& gear, const face_gear::SpaceSheet& space, BodyRing ring,
-              std::size_t cells);
+  BodyPatches(const face_gear::SpaceSheet& space, BodyRing ring, std::size_t cells);
 
   /// Cells of one piece that lie beside each other and share the bound of their second derivatives.
   void add_block(tooth_space::Piece piece, const std::vector<SheetCell>& cells);
@@ -139,7 +138,6 @@ class BodyPatches {
   void keep(std::size_t index, Cell cell);
 
   const face_gear::SpaceSheet& space_;
-  PatchBounds bounds_;
   BodyRing ring_;
   std::vector<Cell> cells_;
   std::vector<BodyBox> boxes_;  ///< of the cells

@@ -14,10 +14,7 @@ namespace toothpath::analytic {
 namespace {
 
 constexpr double kTreeError = 1e-7;  // mm: of distances to facets, with room to spare
-constexpr double kBorder = 1e-9;     // a foot this far beyond the border of a piece (in its parameter) still counts
-// Corrected pieces share their normals to 1e-5 only; a foot so little beyond is about 1e-6 mm wrong.
-constexpr double kDisplacedBorder = 3e-5;
-constexpr double kShortLine = 0.5;  // a line that spans more than this share of its radius is not looked at
+constexpr double kShortLine = 0.5;   // a line that spans more than this share of its radius is not looked at
 
 /// Radii and heights that some places have.
 struct Extent {
@@ -218,7 +215,8 @@ class GearDistance::Impl::Question {
       if (seed.d - ring.facet_sag > accepted) continue;
       const auto& quad = ring.quads[seed.quad];
       const auto foot = ring.space.foot(quad.piece, at.c, quad.u, quad.v);
-      if (!foot || !on_piece(ring, quad.piece, foot->u)) continue;
+      // On the piece, not on its continuation beyond its borders?
+      if (!foot || !ring.space.borders(quad.piece).hold(foot->u, ring.space.outline().join)) continue;
       if (foot->distance < 0 && at.in_air()) continue;  // seen through an end of the ring or the tip
       found = true;
       if (ring.on_ring(foot->at.p)) {
@@ -232,20 +230,6 @@ class GearDistance::Impl::Question {
     // Inside the material beside an end or below a tip edge: the nearest surface is that end or land.
     if (beyond < 0 && accepted == INFINITY) take(beyond, false, at.zone, "inside", at.c, at.c);
     return found;
-  }
-
-  /// Does a foot lie on its piece, not on the continuation beyond its borders?
-  [[nodiscard]] static bool on_piece(const GearRing& ring, tooth_space::Piece piece, double u) {
-    const auto& w = ring.space.surface().shaper;
-    const double slack = ring.space.ring().displaced() ? kDisplacedBorder : kBorder;
-    switch (piece) {
-      case tooth_space::Piece::flank_plus:
-      case tooth_space::Piece::flank_minus: return u <= w.theta_t + slack;
-      case tooth_space::Piece::root: return u >= -slack && u <= 1 + slack;
-      case tooth_space::Piece::fillet_plus:
-      case tooth_space::Piece::fillet_minus: return u >= w.A_t - slack && u <= w.A_e + slack;
-      default: return false;
-    }
   }
 
   void edges(const View& at) {

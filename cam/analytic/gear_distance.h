@@ -16,7 +16,7 @@
 
 #include "cam/analytic/spatial_index.h"
 #include "geometry/base/refusal.h"
-#include "geometry/face_gear/offset_sheet.h"
+#include "geometry/face_gear/space_sheet.h"
 
 namespace toothpath::analytic {
 

@@ -35,7 +35,7 @@ double distance_between(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
 class Maker {
  public:
   Maker(const face_gear::FaceGear& gear, int zone, const face_gear::SpaceSheet& space, GearRing& ring, double reach_mm)
-      : gear_(gear), zone_(zone), space_(space), R(ring), reach_(reach_mm), bounds_(gear.parameters(), space) {}
+      : gear_(gear), zone_(zone), space_(space), R(ring), reach_(reach_mm) {}
 
   void make() {
     R.base_mm = std::min(gear_.lowest_root(), grooved() ? gear_.groove_floor() : INFINITY) - 0.5;
@@ -45,8 +45,8 @@ class Maker {
     tables();
     end_edges();
     for (std::size_t n = 0; n < 2; ++n) {
-      tip_bend_[n] = tip_bends(bounds_, n == 0 ? 1 : -1, tip_[n], R.table_r);
-      add_edge(n == 0 ? plus_line_ : minus_line_, tip_edge_sags(bounds_, tip_bend_[n], R.table_r), "tip edge");
+      tip_bend_[n] = tip_bends(space_, n == 0 ? 1 : -1, tip_[n], R.table_r);
+      add_edge(n == 0 ? plus_line_ : minus_line_, tip_edge_sags(space_, tip_bend_[n], R.table_r), "tip edge");
     }
     land_cells();
     end_cells();
@@ -152,28 +152,25 @@ class Maker {
     }
     // The corners where the flanks leave through the tip surface.
     for (const int side : {1, -1}) {
-      const auto c = space_.tip(side, r);
+      const auto c = space_.tip_edge(side, r);
       if (!c) continue;
       const auto piece = tooth_space::flank_of(side);
-      const auto q = space_.point(piece, c->at.theta, c->at.B);
+      const auto q = space_.point(piece, c->u, c->v);
       if (!q) continue;
       const Vec2 corner(std::atan2(q->p.y(), q->p.x()), z_tip);
-      const EndPlace place{piece, c->at.theta, c->at.B, q->p};
+      const EndPlace place{piece, c->u, c->v, q->p};
       places.insert(side > 0 ? places.begin() : places.end(), place);
       profile.insert(side > 0 ? profile.begin() : profile.end(), corner);
     }
   }
 
   void tables() {
-    const auto start_of = [](const std::optional<face_gear::TipPlace>& last) {
-      return last ? std::optional(last->at) : std::nullopt;
-    };
-    std::optional<face_gear::TipPlace> last_plus, last_minus;
+    std::optional<tooth_space::EdgePlace> last_plus, last_minus;
     for (int k = 0; k < kTable; ++k) {
       const double r = R.r_in + (R.r_out - R.r_in) * k / (kTable - 1);
       const double z_tip = space_.surface().z_tip(r), pitch = gear_.pitch();
-      last_plus = space_.tip(1, r, start_of(last_plus));
-      last_minus = space_.tip(-1, r, start_of(last_minus));
+      last_plus = space_.tip_edge(1, r, last_plus);
+      last_minus = space_.tip_edge(-1, r, last_minus);
       const auto root = space_.point(tooth_space::Piece::root, 0.5,
                                      std::sqrt(r * r - space_.surface().E * space_.surface().E) / space_.surface().Sg);
       R.table_r.push_back(r);
@@ -202,7 +199,7 @@ class Maker {
       std::vector<Vec3> line;
       for (const auto& place : places_[n]) line.push_back(place.p);
       const std::size_t first = R.edges.size();
-      add_edge(line, end_edge_sags(bounds_, places_[n]), "end edge");
+      add_edge(line, end_edge_sags(space_, places_[n]), "end edge");
       for (std::size_t k = first; k < R.edges.size(); ++k) border_sag_[n] = std::max(border_sag_[n], R.edges[k].sag);
     }
   }
@@ -295,7 +292,7 @@ class Maker {
     for (double& azimuth : ring.edge[1]) azimuth -= gear_.pitch();
     ring.border = {end_border(end_face(false), R.end_in), end_border(end_face(true), R.end_out)};
     ring.border_sag = border_sag_;
-    R.patches = std::make_unique<BodyPatches>(gear_.parameters(), space_, std::move(ring), R.cells.size());
+    R.patches = std::make_unique<BodyPatches>(space_, std::move(ring), R.cells.size());
     // Blocks of the sheet: fillets bend quickly across, and slowly along the tooth.
     std::map<std::array<std::size_t, 3>, std::vector<BodyPatches::SheetCell>> blocks;
     const auto& st = R.sheet.stations();
@@ -306,8 +303,8 @@ class Maker {
       const bool fillet = is_fillet(piece);
       BodyPatches::SheetCell cell;
       cell.index = n;
-      const std::array<const face_gear::OffsetSheet::Node*, 4> nodes{&st[j].nodes[k], &st[j].nodes[k + 1],
-                                                                     &st[j + 1].nodes[k + 1], &st[j + 1].nodes[k]};
+      const std::array<const tooth_space::OffsetSheet::Node*, 4> nodes{&st[j].nodes[k], &st[j].nodes[k + 1],
+                                                                       &st[j + 1].nodes[k + 1], &st[j + 1].nodes[k]};
       for (std::size_t c = 0; c < 4; ++c) {
         cell.uv[c] = {nodes[c]->at.u, nodes[c]->at.v};
         cell.corner[c] = nodes[c]->at.contact.p;
@@ -393,12 +390,11 @@ class Maker {
   const face_gear::SpaceSheet& space_;
   GearRing& R;
   double reach_;
-  PatchBounds bounds_;
   std::vector<Box> boxes_;
   std::vector<Station> station_;  // of the cells of the sheet
   std::vector<Other> others_;
   std::array<std::vector<EndPlace>, 2> places_;
-  std::array<std::vector<std::optional<face_gear::TipPlace>>, 2> tip_;
+  std::array<std::vector<std::optional<tooth_space::EdgePlace>>, 2> tip_;
   std::vector<Vec3> plus_line_, minus_line_;
   std::array<double, 2> border_sag_{};
   std::array<std::vector<std::optional<CurveBend>>, 2> tip_bend_;
@@ -412,10 +408,10 @@ std::optional<Refusal> flank_below_tip(const face_gear::SpaceSheet& space, const
   for (const int side : {1, -1})
     for (int k = kSections; k >= 0; --k) {
       double folded = inner + k * step, reaches = folded + step;
-      if (space.tip(side, folded)) continue;
+      if (space.tip_edge(side, folded)) continue;
       for (int n = 0; n < kHalvings && k < kSections; ++n) {
         const double middle = 0.5 * (folded + reaches);
-        (space.tip(side, middle) ? reaches : folded) = middle;
+        (space.tip_edge(side, middle) ? reaches : folded) = middle;
       }
       const std::string way_out =
           k < kSections
@@ -439,8 +435,7 @@ Expected<std::unique_ptr<GearRing>, Refusal> GearRing::make(const face_gear::Fac
   const double beyond = std::min(reach_mm, 0.25 * (r_out - r_in) + 1.0);
   const int stations = std::clamp(int((r_out - r_in + 2 * beyond) / kCellLength) + 2, 9, 400);
   const face_gear::SpaceSheet space(gear.parameters(), ring);
-  auto out =
-      std::make_unique<GearRing>(space, face_gear::OffsetSheet(space, 0.0, r_in - beyond, r_out + beyond, stations));
+  auto out = std::make_unique<GearRing>(space, r_in - beyond, r_out + beyond, stations);
   out->r_in = r_in;
   out->r_out = r_out;
   const auto& sheet = out->sheet;

@@ -11,7 +11,7 @@
 #include "cam/analytic/gear_distance.h"
 #include "cam/analytic/spatial_index.h"
 #include "cam/clearance/facet_tree.h"
-#include "geometry/face_gear/offset_sheet.h"
+#include "geometry/tooth_space/offset_sheet.h"
 
 namespace toothpath::analytic {
 
@@ -33,7 +33,7 @@ struct SheetQuad {
 struct GearRing {
   using Cell = GearDistance::Cell;
   face_gear::SpaceSheet space;
-  face_gear::OffsetSheet sheet;
+  tooth_space::OffsetSheet sheet;
   double r_in = 0, r_out = 0;
   double base_mm = 0;  ///< height at which the cells of the ends stop
   std::vector<Cell> cells;
@@ -58,7 +58,11 @@ struct GearRing {
   std::vector<std::array<Vec3, 3>> triangles;    ///< of the cells, for bodies
   std::unique_ptr<BodyPatches> patches;          ///< the same cells on the exact surface
 
-  GearRing(const face_gear::SpaceSheet& s, face_gear::OffsetSheet o) : space(s), sheet(std::move(o)) {}
+  /// The sheet of the surface itself at `stations` radii.
+  GearRing(const face_gear::SpaceSheet& s, double r_from, double r_to, int stations)
+      : space(s), sheet(space, 0.0, r_from, r_to, stations) {}
+  GearRing(const GearRing&) = delete;  // the sheet refers to the space
+  GearRing& operator=(const GearRing&) = delete;
 
   /// Ring `zone` of the gear, for distances up to `reach_mm`; a refusal where its surfaces cannot be followed over its
   /// whole width.

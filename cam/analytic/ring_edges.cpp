@@ -10,7 +10,7 @@ constexpr double kSag = 5e-6;         // mm: where a proven sag is larger, small
 constexpr std::size_t kStretch = 60;  // segments that are bounded together, at most
 
 /// Segments from .. to, whose places are all of one piece, but perhaps the last.
-void prove(const PatchBounds& bounds, const std::vector<EndPlace>& places, std::size_t from, std::size_t to,
+void prove(const tooth_space::ToothSpace& space, const std::vector<EndPlace>& places, std::size_t from, std::size_t to,
            std::vector<double>& sags) {
   const std::size_t last = places[to].piece == places[from].piece ? to : to - 1;
   const std::size_t back = last > from || from == 0 ? from : from - 1;
@@ -27,7 +27,7 @@ void prove(const PatchBounds& bounds, const std::vector<EndPlace>& places, std::
   const double half_a = last == to ? 1 : 1 + 1.01 * step;  // the border to the next piece is a step farther
   bool good = false;
   for (double half_b = 2 * off + 1e-6; half_b < 1; half_b *= 5) {
-    const auto bend = bounds.bend_at_radius(places[from].piece, frame, half_a, half_b);
+    const auto bend = end_curve_bend(space, places[from].piece, frame, half_a, half_b);
     if (!bend) continue;
     good = true;
     for (std::size_t k = from; k < to; ++k) {  // only what leads away from the chord counts
@@ -39,34 +39,35 @@ void prove(const PatchBounds& bounds, const std::vector<EndPlace>& places, std::
   }
   if (good || to - from < 2) return;
   const std::size_t middle = (from + to) / 2;
-  prove(bounds, places, from, middle, sags);
-  prove(bounds, places, middle, to, sags);
+  prove(space, places, from, middle, sags);
+  prove(space, places, middle, to, sags);
 }
 
 }  // namespace
 
-std::vector<double> end_edge_sags(const PatchBounds& bounds, const std::vector<EndPlace>& places) {
+std::vector<double> end_edge_sags(const tooth_space::ToothSpace& space, const std::vector<EndPlace>& places) {
   std::vector<double> sags(places.size(), -1);
   for (std::size_t from = 0, to = 0; from + 1 < places.size(); from = to) {
     to = from + 1;
     while (to + 1 < places.size() && to < from + kStretch && places[to].piece == places[from].piece) ++to;
-    prove(bounds, places, from, to, sags);
+    prove(space, places, from, to, sags);
   }
   return sags;
 }
 
-std::vector<std::optional<CurveBend>> tip_bends(const PatchBounds& bounds, int side,
-                                                const std::vector<std::optional<face_gear::TipPlace>>& places,
+std::vector<std::optional<CurveBend>> tip_bends(const tooth_space::ToothSpace& space, int side,
+                                                const std::vector<std::optional<tooth_space::EdgePlace>>& places,
                                                 const std::vector<double>& radii) {
   std::vector<std::optional<CurveBend>> bends;
   for (std::size_t k = 0; k + 1 < places.size(); ++k)
     bends.push_back(places[k] && places[k + 1]
-                        ? bounds.tip_azimuth(side, *places[k], radii[k], *places[k + 1], radii[k + 1])
+                        ? space.tip_azimuth(side, *places[k], radii[k], *places[k + 1], radii[k + 1])
                         : std::nullopt);
   return bends;
 }
 
-std::vector<double> tip_edge_sags(const PatchBounds& bounds, const std::vector<std::optional<CurveBend>>& bends,
+std::vector<double> tip_edge_sags(const tooth_space::ToothSpace& space,
+                                  const std::vector<std::optional<CurveBend>>& bends,
                                   const std::vector<double>& radii) {
   std::vector<double> sags;
   for (std::size_t k = 0; k < bends.size(); ++k) {
@@ -78,7 +79,7 @@ std::vector<double> tip_edge_sags(const PatchBounds& bounds, const std::vector<s
     const double r = radii[k + 1], step = r - radii[k], a1 = bends[k]->slope.magnitude(),
                  a2 = bends[k]->bend.magnitude();
     sags.push_back(0.125 * step * step *
-                   std::hypot(r * a1 * a1, 2 * a1 + r * a2, bounds.tip_surface_bend(radii[k], r).magnitude()));
+                   std::hypot(r * a1 * a1, 2 * a1 + r * a2, space.tip_bend(radii[k], r).bend.magnitude()));
   }
   return sags;
 }

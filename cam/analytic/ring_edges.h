@@ -17,15 +17,16 @@ struct EndPlace {
 
 /// Sag of every segment between neighbouring places, mm; -1 where no bound is found. The last step of a piece ends at
 /// the first place of the next one.
-[[nodiscard]] std::vector<double> end_edge_sags(const PatchBounds& bounds, const std::vector<EndPlace>& places);
+[[nodiscard]] std::vector<double> end_edge_sags(const tooth_space::ToothSpace& space,
+                                                const std::vector<EndPlace>& places);
 
 /// Derivatives of the azimuth of a tip edge by the radius, from place to place; none where no bound is found.
 [[nodiscard]] std::vector<std::optional<CurveBend>> tip_bends(
-    const PatchBounds& bounds, int side, const std::vector<std::optional<face_gear::TipPlace>>& places,
+    const tooth_space::ToothSpace& space, int side, const std::vector<std::optional<tooth_space::EdgePlace>>& places,
     const std::vector<double>& radii);
 
 /// Sag of every segment of a tip edge, mm; -1 where no bound is known.
-[[nodiscard]] std::vector<double> tip_edge_sags(const PatchBounds& bounds,
+[[nodiscard]] std::vector<double> tip_edge_sags(const tooth_space::ToothSpace& space,
                                                 const std::vector<std::optional<CurveBend>>& bends,
                                                 const std::vector<double>& radii);
 

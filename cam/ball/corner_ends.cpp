@@ -20,11 +20,11 @@ class OpenEnd {
  public:
   /// `plus`: the corner lies on the plus side of the root land. `upper`: the wall after the gap (in sigma), else the
   /// one before it.
-  OpenEnd(const face_gear::OffsetSheet& sheet, const FinishingOptions& o, const PartDistance& distance, bool inner,
+  OpenEnd(const tooth_space::OffsetSheet& sheet, const FinishingOptions& o, const PartDistance& distance, bool inner,
           bool plus, bool upper)
       : sheet_(sheet), o_(o), distance_(distance), inner_(inner), plus_(plus), upper_(upper) {
-    const auto& zone = sheet.space().ring().zone;
-    end_radius_ = inner ? zone.inner_radius_mm : zone.outer_radius_mm;
+    const auto& zone = sheet.space().outline();
+    end_radius_ = inner ? zone.s_from : zone.s_to;
   }
 
   std::vector<BallPass> passes() const {
@@ -44,10 +44,10 @@ class OpenEnd {
   }
 
  private:
-  [[nodiscard]] std::optional<face_gear::SheetGap> gap(double r) const {
+  [[nodiscard]] std::optional<tooth_space::SheetGap> gap(double r) const {
     for (const auto& g : sheet_.gaps(r)) {
-      const face_gear::SheetCorner which = face_gear::corner_of(g);
-      if (which == face_gear::SheetCorner::plus || which == face_gear::SheetCorner::both ? plus_ : !plus_) return g;
+      const tooth_space::SheetCorner which = tooth_space::corner_of(g);
+      if (which == tooth_space::SheetCorner::plus || which == tooth_space::SheetCorner::both ? plus_ : !plus_) return g;
     }
     return {};
   }
@@ -109,7 +109,7 @@ class OpenEnd {
   /// r.
   [[nodiscard]] double left_between(int count, double r) const {
     const double from = edge(r), to = reach(r, 2 * kWallTouch);
-    std::vector<face_gear::SheetPoint> lines;
+    std::vector<tooth_space::SheetPoint> lines;
     std::vector<Vec3> feeds;
     for (int i = 0; i <= count; ++i) {
       const double sigma = count > 0 ? place(double(i) / count, r) : from;
@@ -158,7 +158,7 @@ class OpenEnd {
     return pass;
   }
 
-  const face_gear::OffsetSheet& sheet_;
+  const tooth_space::OffsetSheet& sheet_;
   const FinishingOptions& o_;
   const PartDistance& distance_;
   bool inner_, plus_, upper_;
@@ -167,7 +167,7 @@ class OpenEnd {
 
 }  // namespace
 
-std::vector<BallPass> plan_corner_ends(const face_gear::OffsetSheet& sheet, const FinishingOptions& options,
+std::vector<BallPass> plan_corner_ends(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options,
                                        const PartDistance& distance) {
   std::vector<BallPass> out;
   if (sheet.empty() || !sheet.has_gaps()) return out;

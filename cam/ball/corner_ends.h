@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "cam/ball/finishing.h"
-#include "geometry/face_gear/offset_sheet.h"
+#include "geometry/tooth_space/offset_sheet.h"
 
 namespace toothpath::ball {
 
@@ -28,7 +28,7 @@ using PartDistance = std::function<double(const Vec3& centre)>;
 /// Passes from an end of the ring (with run-out) to where the corner closes, spaced for the asked cusp; none on a sheet
 /// without gaps and where what stays without them is below the asked cusp. Their ball centres keep the offset of the
 /// sheet from the part, but for 0.05 um.
-[[nodiscard]] std::vector<BallPass> plan_corner_ends(const face_gear::OffsetSheet& sheet,
+[[nodiscard]] std::vector<BallPass> plan_corner_ends(const tooth_space::OffsetSheet& sheet,
                                                      const FinishingOptions& options, const PartDistance& distance);
 
 }  // namespace toothpath::ball

@@ -31,7 +31,7 @@ double smooth(const std::vector<double>& y, double t) {
 
 class FinishingPlanner {
  public:
-  FinishingPlanner(const face_gear::OffsetSheet& sheet, const FinishingOptions& options)
+  FinishingPlanner(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options)
       : sheet_(sheet), o_(options), count_(sheet, options) {}
 
   Result<FinishingPasses> run() {
@@ -121,7 +121,7 @@ class FinishingPlanner {
   /// The pass as its neighbours see it at every sample radius between the ends of the sheet; nothing where the sheet
   /// has no point.
   [[nodiscard]] std::vector<std::optional<PassLine>> lines_of(const Place& sigma) const {
-    std::vector<std::optional<face_gear::SheetPoint>> places;
+    std::vector<std::optional<tooth_space::SheetPoint>> places;
     for (int k = 0; k <= samples(); ++k) places.push_back(sheet_.at(sigma(sample_radius(k)), sample_radius(k)));
     const auto centre = [&](std::size_t k) { return places[k] ? std::optional(places[k]->centre) : std::nullopt; };
     std::vector<std::optional<PassLine>> lines(places.size());
@@ -156,20 +156,20 @@ class FinishingPlanner {
   [[nodiscard]] bool on_ring(const PassLine& a, const PassLine& b) const {
     const auto [low, high] = std::minmax({radius(a.at.contact.p), radius(b.at.contact.p)});
     const double beyond = high - low + 0.02 * o_.ball_radius_mm;
-    const auto& ring = sheet_.space().ring().zone;
-    return high > ring.inner_radius_mm - beyond && low < ring.outer_radius_mm + beyond;
+    const auto& ring = sheet_.space().outline();
+    return high > ring.s_from - beyond && low < ring.s_to + beyond;
   }
 
   /// Of one value a station, the greatest where some contact of the station lies on the ring: beyond its ends no cusp
   /// counts.
   [[nodiscard]] double most_on_ring(const std::vector<double>& values) const {
-    const auto& ring = sheet_.space().ring().zone;
+    const auto& ring = sheet_.space().outline();
     double most = 0;
     for (std::size_t j = 0; j < values.size(); ++j) {
       const auto& nodes = sheet_.stations()[j].nodes;
-      const bool on = std::any_of(nodes.begin(), nodes.end(), [&](const face_gear::OffsetSheet::Node& n) {
+      const bool on = std::any_of(nodes.begin(), nodes.end(), [&](const tooth_space::OffsetSheet::Node& n) {
         const double r = radius(n.at.contact.p);
-        return r >= ring.inner_radius_mm && r <= ring.outer_radius_mm;
+        return r >= ring.s_from && r <= ring.s_to;
       });
       if (on) most = std::max(most, values[j]);
     }
@@ -265,12 +265,12 @@ class FinishingPlanner {
     double from = 0, to = 0;
     bool one = false;  ///< both corners in one
   };
-  static std::optional<CornerPlace> find_corner(const std::vector<face_gear::SheetGap>& gaps, bool plus) {
+  static std::optional<CornerPlace> find_corner(const std::vector<tooth_space::SheetGap>& gaps, bool plus) {
     for (const auto& g : gaps) {
-      const face_gear::SheetCorner which = face_gear::corner_of(g);
-      if (which == face_gear::SheetCorner::both ||
-          which == (plus ? face_gear::SheetCorner::plus : face_gear::SheetCorner::minus))
-        return CornerPlace{g.from, g.to, which == face_gear::SheetCorner::both};
+      const tooth_space::SheetCorner which = tooth_space::corner_of(g);
+      if (which == tooth_space::SheetCorner::both ||
+          which == (plus ? tooth_space::SheetCorner::plus : tooth_space::SheetCorner::minus))
+        return CornerPlace{g.from, g.to, which == tooth_space::SheetCorner::both};
     }
     return {};
   }
@@ -434,7 +434,7 @@ class FinishingPlanner {
     return (r - sheet_.r_from()) / (sheet_.r_to() - sheet_.r_from()) * double(sheet_.stations().size() - 1);
   }
 
-  const face_gear::OffsetSheet& sheet_;
+  const tooth_space::OffsetSheet& sheet_;
   FinishingOptions o_;
   PassCount count_;
   std::vector<SheetPassAsked> asked_;
@@ -443,11 +443,11 @@ class FinishingPlanner {
 
 }  // namespace
 
-Result<FinishingPasses> plan_finishing(const face_gear::OffsetSheet& sheet, const FinishingOptions& options) {
-  const auto& ring = sheet.space().ring().zone;
+Result<FinishingPasses> plan_finishing(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options) {
+  const auto& ring = sheet.space().outline();
   if (sheet.empty() || sheet.r_from() >= sheet.r_to())
     return fail("the ball centres of a {:.4f} mm ball find no surface between the radii {:.4f} and {:.4f}",
-                options.ball_radius_mm, ring.inner_radius_mm, ring.outer_radius_mm);
+                options.ball_radius_mm, ring.s_from, ring.s_to);
   return FinishingPlanner(sheet, options).run();
 }
 

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "cam/path/operation.h"
-#include "geometry/face_gear/offset_sheet.h"
+#include "geometry/base/result.h"
+#include "geometry/tooth_space/offset_sheet.h"
 
 namespace toothpath::ball {
 
@@ -54,7 +55,7 @@ struct FinishingPasses {
 /// Passes over the whole sheet. Step-over: the cusp between two neighbours is w^2 / (8 R (1 + k R)) for centres w apart
 /// across the pass, k the normal curvature of the machined surface across the pass, convex positive.
 /// Fails if the sheet does not cover the ring (undercut: the surfaces end inside it).
-[[nodiscard]] Result<FinishingPasses> plan_finishing(const face_gear::OffsetSheet& sheet,
+[[nodiscard]] Result<FinishingPasses> plan_finishing(const tooth_space::OffsetSheet& sheet,
                                                      const FinishingOptions& options);
 
 /// Points of a curve r -> place, as sparse as the chord tolerance allows. Shared by finishing and roughing.

@@ -41,7 +41,7 @@ void divide(std::vector<double>& sigma, std::vector<double>& count) {
 
 }  // namespace
 
-PassLine::PassLine(double place, const face_gear::SheetPoint& point, const std::optional<Vec3>& before,
+PassLine::PassLine(double place, const tooth_space::SheetPoint& point, const std::optional<Vec3>& before,
                    const std::optional<Vec3>& after)
     : sigma(place), at(point) {
   const Vec3 &c = at.centre, from = before.value_or(c), to = after.value_or(c);
@@ -63,7 +63,7 @@ double PassLine::distance(const Vec3& p) const {
   return (away - t * feed - t * t * bend).norm();
 }
 
-PassCount::PassCount(const face_gear::OffsetSheet& sheet, const FinishingOptions& options)
+PassCount::PassCount(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options)
     : sheet_(sheet), o_(options) {
   count_profiles();
   for (auto& p : profiles_) divide(p.sigma, p.count);
@@ -78,7 +78,7 @@ double PassCount::sigma_at(std::size_t j, double count) const {
 }
 
 /// Centre spacing across the pass for the asked cusp at a contact point.
-double PassCount::spacing(double sigma, const face_gear::SheetPoint& s, const Vec3& feed) const {
+double PassCount::spacing(double sigma, const tooth_space::SheetPoint& s, const Vec3& feed) const {
   const Vec3 across = s.contact.n.cross(feed);
   const double k = face_gear::SpaceSheet::normal_curvature(s.contact, across);
   const double regular = std::max(1e-6, (1 + k * sheet_.delta()) / (1 + k * o_.allowance_mm));
@@ -96,12 +96,12 @@ void PassCount::count_profiles() {
       const auto& st = stations[j];
       Profile p;
       double count = 0;
-      const face_gear::OffsetSheet::Node* previous = nullptr;
+      const tooth_space::OffsetSheet::Node* previous = nullptr;
       double previous_w = 0;
       Vec3 previous_feed = Vec3::Zero();
       for (std::size_t k = 0; k < st.nodes.size(); ++k) {
         const auto& node = st.nodes[k];
-        const bool hidden = std::any_of(st.gaps.begin(), st.gaps.end(), [&](const face_gear::SheetGap& g) {
+        const bool hidden = std::any_of(st.gaps.begin(), st.gaps.end(), [&](const tooth_space::SheetGap& g) {
           return node.sigma > g.from && node.sigma < g.to;
         });
         if (hidden) continue;
@@ -188,7 +188,7 @@ std::vector<double> PassCount::growth(std::size_t j) const {
     }
     for (std::size_t i = 0; i + apart < lines.size(); ++i) {
       const auto &a = lines[i], &b = lines[i + apart];
-      const auto between = [&](const face_gear::SheetGap& g) { return a.sigma <= g.from && b.sigma >= g.to; };
+      const auto between = [&](const tooth_space::SheetGap& g) { return a.sigma <= g.from && b.sigma >= g.to; };
       if (std::any_of(gaps.begin(), gaps.end(), between)) continue;  // a pass will run along the corner between them
       const double height = cusp(a, b, r, gaps).height_mm;
       const double ratio = std::clamp(
@@ -225,13 +225,13 @@ std::optional<PassLine> PassCount::line_at(std::size_t j, double count) const {
 /// The crest stands where both balls leave the same: from one pass to the other the distance to the first grows and
 /// that to the second falls, so that the place between them is enclosed. Allowance left out.
 Crest PassCount::cusp(const PassLine& a, const PassLine& b, double r,
-                      const std::vector<face_gear::SheetGap>& gaps) const {
+                      const std::vector<tooth_space::SheetGap>& gaps) const {
   // What both balls leave at a place.
-  const auto over = [&](const face_gear::SheetPoint& s) {
+  const auto over = [&](const tooth_space::SheetPoint& s) {
     const Vec3 p = s.contact.p + o_.allowance_mm * s.contact.n;
     return std::pair{a.distance(p) - o_.ball_radius_mm, b.distance(p) - o_.ball_radius_mm};
   };
-  const auto crest = [&](const face_gear::SheetPoint& s, double height) {
+  const auto crest = [&](const tooth_space::SheetPoint& s, double height) {
     const auto lean = [&](const PassLine& pass) {
       return (s.contact.p - pass.at.centre).normalized().cross(pass.at.contact.n).norm();
     };

@@ -7,20 +7,20 @@
 #include <vector>
 
 #include "cam/ball/finishing.h"
-#include "geometry/face_gear/offset_sheet.h"
+#include "geometry/tooth_space/offset_sheet.h"
 
 namespace toothpath::ball {
 
 /// A pass as its neighbours see it near one place: the parabola c + f t + b t^2 over the way t.
 struct PassLine {
   double sigma = 0;
-  face_gear::SheetPoint at;  ///< c is its centre
-  Vec3 feed = Vec3::Zero();  ///< f, unit
-  Vec3 bend = Vec3::Zero();  ///< b, 1/mm
+  tooth_space::SheetPoint at;  ///< c is its centre
+  Vec3 feed = Vec3::Zero();    ///< f, unit
+  Vec3 bend = Vec3::Zero();    ///< b, 1/mm
 
   /// Through a place and the ball centres of the pass before and after it; one of the two may be missing: then the line
   /// is straight.
-  PassLine(double sigma, const face_gear::SheetPoint& at, const std::optional<Vec3>& before,
+  PassLine(double sigma, const tooth_space::SheetPoint& at, const std::optional<Vec3>& before,
            const std::optional<Vec3>& after);
   /// From a point within a few ball radii.
   [[nodiscard]] double distance(const Vec3& p) const;
@@ -43,7 +43,7 @@ struct HighCusp {
 /// are drawn together where it is higher than asked. Holds a reference to the sheet, which must have a station.
 class PassCount {
  public:
-  PassCount(const face_gear::OffsetSheet& sheet, const FinishingOptions& options);
+  PassCount(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options);
 
   /// Passes over the whole profile, one number a station of the sheet. Gaps of the sheet count nothing.
   [[nodiscard]] const std::vector<double>& totals() const { return totals_; }
@@ -58,14 +58,14 @@ class PassCount {
   /// Highest place of the surface at centre radius r between two passes, above what both balls leave. The allowance is
   /// left out, and so are places behind `gaps`: a corner that the ball does not reach has a pass of its own.
   [[nodiscard]] Crest cusp(const PassLine& a, const PassLine& b, double r,
-                           const std::vector<face_gear::SheetGap>& gaps) const;
+                           const std::vector<tooth_space::SheetGap>& gaps) const;
 
  private:
   struct Profile {
     std::vector<double> sigma, count;  ///< same length, both ascending; gaps are jumps in sigma at equal count
   };
 
-  [[nodiscard]] double spacing(double sigma, const face_gear::SheetPoint& s, const Vec3& feed) const;
+  [[nodiscard]] double spacing(double sigma, const tooth_space::SheetPoint& s, const Vec3& feed) const;
   void count_profiles();
   void sharpen();
   [[nodiscard]] std::vector<double> growth(std::size_t j) const;
@@ -73,7 +73,7 @@ class PassCount {
   [[nodiscard]] std::optional<PassLine> line_at(std::size_t j, double count) const;
   [[nodiscard]] Vec3 feed_direction(std::size_t j, std::size_t k, int round) const;
 
-  const face_gear::OffsetSheet& sheet_;
+  const tooth_space::OffsetSheet& sheet_;
   FinishingOptions o_;
   std::vector<Profile> profiles_;
   std::vector<double> totals_;

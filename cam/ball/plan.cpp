@@ -93,7 +93,7 @@ class Planner::Work {
  private:
   /// What an operation does in one zone, before the tool has a direction.
   struct ZonePasses {
-    face_gear::OffsetSheet sheet;
+    tooth_space::OffsetSheet sheet;
     std::vector<BallPass> passes;
     OperationPlan summary;  ///< of this zone alone
   };
@@ -116,8 +116,8 @@ class Planner::Work {
                               2 * R, zone, room, 0.05 * wanted)};
     const double margin = std::max(delta, room) + 0.1;
     ZonePasses out{
-        face_gear::OffsetSheet(part_.space(zone), roughing ? delta + kRoughingPad : delta,
-                               ring.inner_radius_mm - margin, ring.outer_radius_mm + margin, roughing ? 65 : 33),
+        tooth_space::OffsetSheet(part_.space(zone), roughing ? delta + kRoughingPad : delta,
+                                 ring.inner_radius_mm - margin, ring.outer_radius_mm + margin, roughing ? 65 : 33),
         {},
         {}};
     if (auto refusal = check_width(out.sheet, key_of(n), zone, tool)) return *refusal;
@@ -571,10 +571,10 @@ class Planner::Work {
   }
 
   /// A ball that does not fit between the flanks is refused with the width that it finds.
-  static std::optional<PlanRefusal> check_width(const face_gear::OffsetSheet& sheet, const std::string& key, int zone,
+  static std::optional<PlanRefusal> check_width(const tooth_space::OffsetSheet& sheet, const std::string& key, int zone,
                                                 const tool::ToolAssembly& tool) {
-    const auto& ring = sheet.space().ring().zone;
-    if (sheet.empty() || sheet.r_to() - sheet.r_from() < 0.5 * (ring.outer_radius_mm - ring.inner_radius_mm))
+    const auto& ring = sheet.space().outline();
+    if (sheet.empty() || sheet.r_to() - sheet.r_from() < 0.5 * (ring.s_to - ring.s_from))
       return PlanRefusal{key + ".tool", fail("the ball-centre surface of tool {} (ball of {:.4f} mm) does not reach "
                                              "over zone {}: the flank ends (undercut) or is hollower than the ball",
                                              tool.number, tool.diameter_mm, zone)};

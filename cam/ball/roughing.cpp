@@ -41,11 +41,11 @@ double at_height(const std::vector<double>& height, const std::vector<double>& a
   return azimuth.back();
 }
 
-Walls walls_of(const face_gear::OffsetSheet& sheet, const face_gear::OffsetSheet::Station& station) {
+Walls walls_of(const tooth_space::OffsetSheet& sheet, const tooth_space::OffsetSheet::Station& station) {
   Walls w;
-  const face_gear::SheetGap* across = nullptr;
+  const tooth_space::SheetGap* across = nullptr;
   for (const auto& g : station.gaps)
-    if (face_gear::corner_of(g) == face_gear::SheetCorner::both) across = &g;
+    if (tooth_space::corner_of(g) == tooth_space::SheetCorner::both) across = &g;
   for (const auto& node : station.nodes)
     if (node.sigma == 2.5) w.root_z = node.at.centre.z();
   struct Place {
@@ -53,7 +53,7 @@ Walls walls_of(const face_gear::OffsetSheet& sheet, const face_gear::OffsetSheet
   };
   std::vector<Place> places;
   for (const auto& node : station.nodes) {
-    const auto inside = [&](const face_gear::SheetGap& g) { return node.sigma > g.from && node.sigma < g.to; };
+    const auto inside = [&](const tooth_space::SheetGap& g) { return node.sigma > g.from && node.sigma < g.to; };
     if (std::none_of(station.gaps.begin(), station.gaps.end(), inside))
       places.push_back({node.sigma, node.at.centre.z() - w.root_z, node.azimuth});
   }
@@ -86,17 +86,17 @@ Walls walls_of(const face_gear::OffsetSheet& sheet, const face_gear::OffsetSheet
 
 class RoughingPlanner {
  public:
-  RoughingPlanner(const face_gear::OffsetSheet& sheet, const RoughingOptions& o,
+  RoughingPlanner(const tooth_space::OffsetSheet& sheet, const RoughingOptions& o,
                   const std::vector<const cut::Removed*>& cleared)
       : sheet_(sheet), o_(o), cleared_(cleared) {}
 
   Result<RoughingPasses> run() {
-    const auto& ring = sheet_.space().ring().zone;
+    const auto& ring = sheet_.space().outline();
     if (sheet_.empty())
       return fail("a ball of {:.4f} mm with {:.4f} mm allowance finds no surface between the radii {:.4f} and {:.4f}",
-                  2 * o_.ball_radius_mm, o_.allowance_mm, ring.inner_radius_mm, ring.outer_radius_mm);
-    from_ = std::max(sheet_.r_from(), ring.inner_radius_mm - o_.overrun_mm);
-    to_ = std::min(sheet_.r_to(), ring.outer_radius_mm + o_.overrun_mm);
+                  2 * o_.ball_radius_mm, o_.allowance_mm, ring.s_from, ring.s_to);
+    from_ = std::max(sheet_.r_from(), ring.s_from - o_.overrun_mm);
+    to_ = std::min(sheet_.r_to(), ring.s_to + o_.overrun_mm);
     double lowest = INFINITY;
     for (const auto& s : sheet_.stations()) {
       walls_.push_back(walls_of(sheet_, s));
@@ -200,14 +200,14 @@ class RoughingPlanner {
 
   [[nodiscard]] bool cuts(const Vec3& from, const Vec3& to, double way) const {
     static const std::vector<Vec3> directions = lower_directions();
-    const auto& ring = sheet_.space().ring().zone;
+    const auto& ring = sheet_.space().outline();
     const double worth = path::kSkinShare * 2 * o_.ball_radius_mm;
     const int places = std::max(1, int(std::ceil(way / (0.4 * o_.ball_radius_mm))));
     for (int k = 0; k <= places; ++k)
       for (const auto& direction : directions) {
         const Vec3 q = from + (to - from) * (double(k) / places) + o_.ball_radius_mm * direction;
         const double r = radius(q);
-        if (r < ring.inner_radius_mm || r > ring.outer_radius_mm || q.z() > o_.blank_top_mm) continue;
+        if (r < ring.s_from || r > ring.s_to || q.z() > o_.blank_top_mm) continue;
         if (std::none_of(cleared_.begin(), cleared_.end(),
                          [&](const cut::Removed* removed) { return removed->excess(q, worth) < worth; }))
           return true;
@@ -215,7 +215,7 @@ class RoughingPlanner {
     return false;
   }
 
-  const face_gear::OffsetSheet& sheet_;
+  const tooth_space::OffsetSheet& sheet_;
   RoughingOptions o_;
   const std::vector<const cut::Removed*>& cleared_;
   double from_ = 0, to_ = 0;
@@ -225,7 +225,7 @@ class RoughingPlanner {
 
 }  // namespace
 
-Result<RoughingPasses> plan_roughing(const face_gear::OffsetSheet& sheet, const RoughingOptions& options,
+Result<RoughingPasses> plan_roughing(const tooth_space::OffsetSheet& sheet, const RoughingOptions& options,
                                      const std::vector<const cut::Removed*>& cleared) {
   return RoughingPlanner(sheet, options, cleared).run();
 }

@@ -30,7 +30,8 @@ struct RoughingPasses {
 
 /// `cleared` are the volumes removed by earlier operations: a pass that would cut nothing (`path::kSkinShare`) is left
 /// out, and of others what cuts nothing at their ends or over a long stretch between.
-[[nodiscard]] Result<RoughingPasses> plan_roughing(const face_gear::OffsetSheet& sheet, const RoughingOptions& options,
+[[nodiscard]] Result<RoughingPasses> plan_roughing(const tooth_space::OffsetSheet& sheet,
+                                                   const RoughingOptions& options,
                                                    const std::vector<const cut::Removed*>& cleared);
 
 }  // namespace toothpath::ball

@@ -20,16 +20,15 @@ bool keeps_on(const std::vector<BallPass::Point>& points) {
 
 class PassMaker {
  public:
-  PassMaker(const face_gear::OffsetSheet& sheet, const FinishingOptions& options, const SheetPassAsked& asked)
+  PassMaker(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options, const SheetPassAsked& asked)
       : sheet_(sheet), o_(options), asked_(asked) {}
 
   [[nodiscard]] Result<SheetPass> run() const {
-    const auto& ring = sheet_.space().ring().zone;
-    double from = radius_of_contact_at(asked_.sigma, ring.inner_radius_mm),
-           to = radius_of_contact_at(asked_.sigma, ring.outer_radius_mm);
+    const auto& ring = sheet_.space().outline();
+    double from = radius_of_contact_at(asked_.sigma, ring.s_from), to = radius_of_contact_at(asked_.sigma, ring.s_to);
     if (asked_.other) {
-      from = std::min(from, radius_of_contact_at(asked_.other, ring.inner_radius_mm));
-      to = std::max(to, radius_of_contact_at(asked_.other, ring.outer_radius_mm));
+      from = std::min(from, radius_of_contact_at(asked_.other, ring.s_from));
+      to = std::max(to, radius_of_contact_at(asked_.other, ring.s_to));
     }
     if (std::isnan(from) || std::isnan(to)) return ends_inside(ring, std::isnan(from));
     const double begin = std::max(from, asked_.r_low), end = std::min(to, asked_.r_high);
@@ -45,14 +44,14 @@ class PassMaker {
  private:
   [[nodiscard]] double longest() const { return 4.0 * o_.ball_radius_mm; }
 
-  [[nodiscard]] Diagnostic ends_inside(const face_gear::FaceGearZone& ring, bool at_inner_end) const {
+  [[nodiscard]] Diagnostic ends_inside(const tooth_space::Outline& ring, bool at_inner_end) const {
     const double least = contact_radius(asked_.sigma(sheet_.r_from()), sheet_.r_from()),
                  most = contact_radius(asked_.sigma(sheet_.r_to()), sheet_.r_to());
     return fail(
         "the flank ends inside the ring (undercut): a ball of radius {:.4f} mm touches it at radii {:.4f} to "
         "{:.4f} mm, the ring is {:.4f} to {:.4f} mm; {:.3g} mm are missing at its {} end",
-        o_.ball_radius_mm, least, most, ring.inner_radius_mm, ring.outer_radius_mm,
-        at_inner_end ? least - ring.inner_radius_mm : ring.outer_radius_mm - most, at_inner_end ? "inner" : "outer");
+        o_.ball_radius_mm, least, most, ring.s_from, ring.s_to, at_inner_end ? least - ring.s_from : ring.s_to - most,
+        at_inner_end ? ring.from : ring.to);
   }
 
   [[nodiscard]] double contact_radius(double sigma, double r) const {
@@ -110,14 +109,14 @@ class PassMaker {
     }
   }
 
-  const face_gear::OffsetSheet& sheet_;
+  const tooth_space::OffsetSheet& sheet_;
   const FinishingOptions& o_;
   const SheetPassAsked& asked_;
 };
 
 }  // namespace
 
-Result<SheetPass> make_sheet_pass(const face_gear::OffsetSheet& sheet, const FinishingOptions& options,
+Result<SheetPass> make_sheet_pass(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options,
                                   const SheetPassAsked& asked) {
   return PassMaker(sheet, options, asked).run();
 }

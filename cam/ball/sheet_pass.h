@@ -26,7 +26,7 @@ struct SheetPass {
 
 /// The piece of the curve whose contact lies on the ring, with the run-out at both ends. Fails where the flank ends
 /// inside the ring (undercut) or the sheet cannot be followed.
-[[nodiscard]] Result<SheetPass> make_sheet_pass(const face_gear::OffsetSheet& sheet, const FinishingOptions& options,
+[[nodiscard]] Result<SheetPass> make_sheet_pass(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options,
                                                 const SheetPassAsked& asked);
 
 }  // namespace toothpath::ball

@@ -41,7 +41,7 @@ std::vector<Vec3> some_centres(const std::vector<BallPass>& passes, std::size_t 
 class Search {
  public:
   Search(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
-         const face_gear::OffsetSheet& sheet, const std::vector<BallPass>& passes, const tool::ToolAssembly& tool,
+         const tooth_space::OffsetSheet& sheet, const std::vector<BallPass>& passes, const tool::ToolAssembly& tool,
          const DirectionOptions& options)
       : tree_(tree),
         sheet_(sheet),
@@ -259,7 +259,7 @@ class Search {
   }
 
   const analytic::BodyTree& tree_;
-  const face_gear::OffsetSheet& sheet_;
+  const tooth_space::OffsetSheet& sheet_;
   const tool::ToolAssembly& tool_;
   const DirectionOptions& o_;
   std::vector<Vec3> few_, many_;
@@ -283,7 +283,7 @@ PitchFrame pitch_frame(const analytic::GearDistance& part, int zone) {
 }
 
 proof::DirectionChoice choose_direction(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
-                                        const face_gear::OffsetSheet& sheet, const std::vector<BallPass>& passes,
+                                        const tooth_space::OffsetSheet& sheet, const std::vector<BallPass>& passes,
                                         const tool::ToolAssembly& tool, const DirectionOptions& options) {
   return Search(part, tree, zone, sheet, passes, tool, options).run();
 }

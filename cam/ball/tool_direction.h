@@ -35,7 +35,7 @@ struct PitchFrame {
 /// slimmer and begin higher to cut nowhere (followed to -3 mm).
 [[nodiscard]] proof::DirectionChoice choose_direction(const analytic::GearDistance& part,
                                                       const analytic::BodyTree& tree, int zone,
-                                                      const face_gear::OffsetSheet& sheet,
+                                                      const tooth_space::OffsetSheet& sheet,
                                                       const std::vector<BallPass>& passes,
                                                       const tool::ToolAssembly& tool, const DirectionOptions& options);
 

@@ -12,7 +12,6 @@
 #include "cam/cut/zone_places.h"
 #include "cam/proof/limits.h"
 #include "geometry/base/work_share.h"
-#include "geometry/face_gear/shaper.h"
 
 namespace toothpath::cut {
 namespace {
@@ -61,9 +60,6 @@ class Meter {
   }
 
   CutSurface run() {
-    const auto& gear = part_.gear().parameters();
-    for (const auto& ring : part_.gear().rings())
-      active_end_.push_back(face_gear::active_roll_parameter(gear, ring.zone.helix_angle_rad));
     WorkShare share(part_.zones() * (tooth_space::kPieces + kLinesWorth));
     for (int zone = 0; zone < part_.zones(); ++zone) {
       const ZonePlaces places(part_, zone);
@@ -96,7 +92,8 @@ class Meter {
     return last_in(region).type == path::OperationType::line_milling;
   }
   /// Can the ball end that the place is judged by touch it? The side of a mill is asked for all of its flank.
-  [[nodiscard]] bool reachable(const face_gear::PatchPoint& s, path::Region region, double* residual = nullptr) const {
+  [[nodiscard]] bool reachable(const tooth_space::PatchPoint& s, path::Region region,
+                               double* residual = nullptr) const {
     if (operations_.empty() || by_side(region)) return true;
     const double R = ball_in(region);
     const auto q = part_.nearest(s.p + R * s.n, R + 0.01);
@@ -119,7 +116,7 @@ class Meter {
     g.reachable.resize(count);
     std::vector<std::vector<float>> excess(count);
     std::vector<double> residual(count, 0.0);
-    std::vector<std::optional<face_gear::SheetPoint>> left(count);
+    std::vector<std::optional<tooth_space::SheetPoint>> left(count);
     tbb::parallel_for(0, g.columns, [&](int column) {
       const double r = places.radius(double(column) / (g.columns - 1));
       const auto [from, to] = places.range(piece, r);
@@ -270,11 +267,11 @@ class Meter {
     return proof::most_left_mm(last_in(region), region);
   }
 
-  void note_unreached(const face_gear::SheetPoint& s, int zone, double height) {
+  void note_unreached(const tooth_space::SheetPoint& s, int zone, double height) {
     if (height <= unreached_limit(path::region_of(s.piece))) return;
     auto& u = out_.unreached;
     u.height_mm = std::max(u.height_mm, height);
-    if (!is_flank(s.piece) || s.u > active_end_[std::size_t(zone)]) return;
+    if (!is_flank(s.piece) || !part_.space(zone).active(s.piece).hold(s.u, 0)) return;
     if (!u.active || height > u.active->height_mm)
       u.active = {height, zone, s.piece, std::hypot(s.contact.p.x(), s.contact.p.y()), s.contact.p.z()};
   }
@@ -420,7 +417,6 @@ class Meter {
     double height = 0, wanted = 0;
   };
   std::vector<Cusp> cusps_;
-  std::vector<double> active_end_;  ///< roll parameter at the end of the active flank, a zone each
   path::ByRegion<double> line_max_;
   double line_step_ = 0, fillet_cusp_ = 0, slack_ = 0;
   CutSurface out_;

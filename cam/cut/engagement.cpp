@@ -228,14 +228,6 @@ class OverloadAlong {
 
 }  // namespace
 
-bool in_blank(const face_gear::FaceGear& gear, const Vec3& p) {
-  const double r = radius(p);
-  const auto& zones = gear.parameters().zones;
-  return p.z() <= gear.blank_top() && std::any_of(zones.begin(), zones.end(), [&](const auto& z) {
-           return r >= z.inner_radius_mm && r <= z.outer_radius_mm;
-         });
-}
-
 Overload overload_along(const std::vector<path::ToolMotion>& motions, const EngagementQuery& query,
                         const AskedLoad& asked) {
   return OverloadAlong(motions, query, asked).run();

@@ -7,7 +7,6 @@
 
 #include "cam/cut/swept_tool.h"
 #include "cam/tool/profile.h"
-#include "geometry/face_gear/gear.h"
 
 namespace toothpath::cut {
 
@@ -29,9 +28,6 @@ struct EngagementQuery {
   double top_mm = 0;                                 ///< z above which it never does
   std::size_t one_of = 1;                            ///< so many motions is measured; the others have zeros
 };
-
-/// Does the uncut blank hold this place? One ring for each zone, up to the top of the stock.
-[[nodiscard]] bool in_blank(const face_gear::FaceGear& gear, const Vec3& p);
 
 /// Stock thinner than this is none, mm.
 inline constexpr double kThinnestStock = 1e-3;

@@ -110,7 +110,7 @@ class BallSearch {
 
 }  // namespace
 
-double concave_curvature(const face_gear::PatchPoint& at) {
+double concave_curvature(const tooth_space::PatchPoint& at) {
   const double E = at.pu.squaredNorm(), F = at.pu.dot(at.pv), G = at.pv.squaredNorm();
   const double L = at.nu.dot(at.pu), M = 0.5 * (at.nu.dot(at.pv) + at.nv.dot(at.pu)), N = at.nv.dot(at.pv);
   // Principal curvatures, convex positive: roots of k^2 (EG - FF) - k (LG - 2MF + NE) + (LN - MM).

@@ -21,6 +21,6 @@ struct LargestBall {
 [[nodiscard]] LargestBall largest_reaching_ball(const analytic::GearDistance& part, double most_mm);
 
 /// The greatest concave principal curvature of a patch [1/mm], > 0; 0 where it is flat or convex in every direction.
-[[nodiscard]] double concave_curvature(const face_gear::PatchPoint& at);
+[[nodiscard]] double concave_curvature(const tooth_space::PatchPoint& at);
 
 }  // namespace toothpath::cut

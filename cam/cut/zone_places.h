@@ -5,11 +5,12 @@
 #include <utility>
 
 #include "cam/analytic/gear_distance.h"
+#include "geometry/tooth_space/offset_sheet.h"
 
 namespace toothpath::cut {
 
 /// Between tip edge and tip edge of one zone, from its inner to its outer radius; sigma as in
-/// geometry/face_gear/offset_sheet.h.
+/// geometry/tooth_space/offset_sheet.h.
 class ZonePlaces {
  public:
   /// Holds a reference to `part`, which must have the zone.
@@ -18,7 +19,7 @@ class ZonePlaces {
   /// Contact radius [mm] at a share of the face width, 0 at the inner end. Clamped to where the surfaces exist.
   [[nodiscard]] double radius(double share) const;
   /// Point, normal and derivatives; `u` and `v` are the parameters of the piece. Nothing where the piece has no point.
-  [[nodiscard]] std::optional<face_gear::SheetPoint> at(double sigma, double r) const { return sheet_.raw(sigma, r); }
+  [[nodiscard]] std::optional<tooth_space::SheetPoint> at(double sigma, double r) const { return sheet_.raw(sigma, r); }
   /// sigma from end to end of a piece at radius r; flanks begin at the tip surface.
   [[nodiscard]] std::pair<double, double> range(tooth_space::Piece piece, double r) const;
 
@@ -26,7 +27,7 @@ class ZonePlaces {
   [[nodiscard]] double tip_sigma(bool plus, double r) const;
 
   const face_gear::SpaceSheet& space_;
-  face_gear::OffsetSheet sheet_;
+  tooth_space::OffsetSheet sheet_;
 };
 
 }  // namespace toothpath::cut

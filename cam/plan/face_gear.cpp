@@ -337,7 +337,7 @@ class FaceGearPlanner {
     const std::vector<const cut::Removed*> before = cleared();
     const double top = part_.gear().blank_top();
     const cut::EngagementQuery query{
-        mill, bodies.cutting, before, [&](const Vec3& p) { return cut::in_blank(part_.gear(), p); }, top, one_of};
+        mill, bodies.cutting, before, [&](const Vec3& p) { return part_.gear().in_blank(p); }, top, one_of};
     std::vector<cut::Engaged> engaged;
     const auto work = [&] { engaged = cut::engagement_along(analytic::GougeCheck::motions_of(path), query); };
     if (o_.stage) o_.stage("engagement", work);

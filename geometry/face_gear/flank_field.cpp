@@ -92,7 +92,7 @@ class Look {
 
   void land(double r) {
     const auto width = [&](const SpaceSheet& sheet) -> std::optional<double> {
-      const auto plus = sheet.tip(1, r), minus = sheet.tip(-1, r);
+      const auto plus = sheet.tip_edge(1, r), minus = sheet.tip_edge(-1, r);
       if (!plus || !minus) return {};
       return r * (plus->azimuth - minus->azimuth);
     };

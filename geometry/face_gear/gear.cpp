@@ -354,6 +354,13 @@ double FaceGear::blank_top() const {
   return top + parameters_.allowance_top_mm;
 }
 
+bool FaceGear::in_blank(const Vec3& p) const {
+  const double r = radius(p);
+  return p.z() <= blank_top() && std::any_of(rings_.begin(), rings_.end(), [&](const FaceGearRing& ring) {
+           return r >= ring.zone.inner_radius_mm && r <= ring.zone.outer_radius_mm;
+         });
+}
+
 double FaceGear::groove_floor() const {
   assert(rings_.size() == 2);
   if (parameters_.groove_depth_mm >= 0)

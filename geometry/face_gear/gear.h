@@ -55,6 +55,8 @@ class FaceGear {
   [[nodiscard]] FaceGear corrected(const std::vector<std::shared_ptr<const RingCorrection>>& corrections) const;
   /// Highest point of the blank (tip surface plus stock), mm in z.
   [[nodiscard]] double blank_top() const;
+  /// Does the uncut blank hold this place? One ring for each zone, up to the top of the stock.
+  [[nodiscard]] bool in_blank(const Vec3& p) const;
   /// Height z of the relief groove's floor; only with two zones. `groove_depth_mm` is measured from the tip surface of
   /// the inner ring at mid-groove; without it the floor lies 0.25 m below the lowest root between the two rings.
   [[nodiscard]] double groove_floor() const;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "geometry/face_gear/flank_foot.h"
+#include "geometry/face_gear/space_enclosures.h"
 
 namespace toothpath::face_gear {
 namespace {
@@ -14,9 +15,14 @@ using Dual2 = Dual<double, 2>;
 using tooth_space::Piece;
 
 constexpr int kNewtonSteps = 20;
+constexpr double kDisplacedJoin = 3e-5;
 
 PatchPoint from_dual(const Vec3T<Dual2>& p, const Vec3T<Dual2>& n) {
   return {value(p), value(n), derivative(p, 0), derivative(p, 1), derivative(n, 0), derivative(n, 1)};
+}
+
+std::optional<FlankCoordinates> start_of(const std::optional<EdgePlace>& near) {
+  return near ? std::optional(FlankCoordinates{near->u, near->v}) : std::nullopt;
 }
 
 /// Radius of a point, and how fast it changes with the two parameters.
@@ -36,9 +42,16 @@ PatchPoint placed(const PatchPoint& q, const Turn& turn) {
 
 SpaceSheet::SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring)
     : ring_(ring),
+      active_end_(active_roll_parameter(gear, ring.zone.helix_angle_rad)),
       dual_(make_surface<Dual2>(gear, ring.zone.helix_angle_rad)),
       second_(make_surface<Second>(gear, ring.zone.helix_angle_rad)),
-      to_minus_(ring.surface.pitch) {
+      to_minus_(ring.surface.pitch),
+      enclosures_(std::make_shared<SpaceEnclosures>(gear, ring.zone.helix_angle_rad)) {
+  outline_.pitch = ring.surface.pitch;
+  outline_.s_from = ring.zone.inner_radius_mm;
+  outline_.s_to = ring.zone.outer_radius_mm;
+  // Corrected pieces share their normals to 1e-5 only; a foot so little beyond is about 1e-6 mm wrong.
+  if (ring_.displaced()) outline_.join = kDisplacedJoin;
   if (!ring_.displaced()) return;
   const auto& f = ring_.surface;
   const auto section = [&](double r) { return std::sqrt(std::max(0.0, r * r - f.E * f.E)) / f.Sg; };
@@ -190,16 +203,69 @@ std::optional<FlankCoordinates> SpaceSheet::invert(int side, double r, double z,
   return {};
 }
 
-std::optional<TipPlace> SpaceSheet::tip(int side, double r, const std::optional<FlankCoordinates>& start) const {
+tooth_space::Borders SpaceSheet::borders(Piece piece) const {
+  const auto& w = ring_.surface.shaper;
+  switch (piece) {
+    case Piece::flank_plus: return {-INFINITY, w.theta_t};
+    case Piece::fillet_plus: return {w.A_t, w.A_e};
+    case Piece::root: return {0, 1};
+    case Piece::fillet_minus: return {w.A_e, w.A_t};
+    case Piece::flank_minus: return {w.theta_t, -INFINITY};
+    default: return {};
+  }
+}
+
+tooth_space::Borders SpaceSheet::active(Piece flank) const {
+  return flank == Piece::flank_plus ? tooth_space::Borders{-INFINITY, active_end_}
+                                    : tooth_space::Borders{active_end_, -INFINITY};
+}
+
+std::optional<EdgePlace> SpaceSheet::plain_tip_edge(int side, double r, const std::optional<EdgePlace>& near) const {
   const auto& f = ring_.surface;
-  const auto at = invert(side, r, f.z_tip(r), start);
+  const auto at = invert_flank(f, side, r, f.z_tip(r), start_of(near));
   if (!at) return {};
-  TipPlace place{*at, flank_azimuth(f, side, *at)};
-  if (field(side).none()) return place;
+  return EdgePlace{at->theta, at->B, flank_azimuth(f, side, *at)};
+}
+
+std::optional<EdgePlace> SpaceSheet::tip_edge(int side, double r, const std::optional<EdgePlace>& near) const {
+  if (field(side).none()) return plain_tip_edge(side, r, near);
+  const auto& f = ring_.surface;
+  const auto at = invert(side, r, f.z_tip(r), start_of(near));
+  if (!at) return {};
+  EdgePlace place{at->theta, at->B, flank_azimuth(f, side, *at)};
   // flank_azimuth follows the plain flank without a jump; the displaced point lies a little beside it.
-  const Vec3 before = f.flank(side, at->theta, at->B).p, now = flank(side, at->theta, at->B).p;
-  place.azimuth += std::atan2(before.x() * now.y() - before.y() * now.x(), before.x() * now.x() + before.y() * now.y());
+  place.azimuth += angle_from_to(f.flank(side, at->theta, at->B).p, flank(side, at->theta, at->B).p);
   return place;
+}
+
+std::optional<double> SpaceSheet::start_v(Piece piece, double u, double r, double distance,
+                                          const std::optional<tooth_space::Near>& near, int attempt) const {
+  const auto& f = ring_.surface;
+  const int side = side_of(piece);
+  if (is_flank(piece)) {
+    if (attempt > 0) return {};
+    // The ball-centre surface of a flank is the flank itself, turned, at theta - distance cos(beta_b)/r_b.
+    const double theta = u - distance * f.shaper.cos_bb / f.shaper.r_b;
+    return flank_B_at_radius(f, side, theta, r, near ? near->v : regular_start_B(f, side, theta));
+  }
+  // Edge by edge in one section; where Newton starts from nothing, from the edge's own place at this radius.
+  const double plane = (std::sqrt(std::max(0.0, r * r - f.E * f.E)) + f.shaper.r_a * f.Cg) / f.Sg;
+  const auto next = near ? std::optional(near->v + (r - near->s)) : std::nullopt;
+  if (attempt == 0) return next;
+  if (attempt == 1 && piece != Piece::root) return fillet_Z_at_radius(f, side, u, r, next.value_or(plane));
+  return attempt == 2 ? std::optional(plane) : std::nullopt;
+}
+
+double SpaceSheet::longest_step(Piece piece, double r) const { return is_flank(piece) ? 0.1 : 0.1 * r; }
+
+tooth_space::CurveBend SpaceSheet::tip_bend(double r_from, double r_to) const { return enclosures_->tip(r_from, r_to); }
+std::optional<tooth_space::Jet> SpaceSheet::enclosure(Piece piece, const tooth_space::PatchFrame& frame, double half_a,
+                                                      double half_b) const {
+  return enclosures_->over(*this, piece, {frame, half_a, half_b});
+}
+std::optional<tooth_space::CurveBend> SpaceSheet::tip_azimuth(int side, const EdgePlace& from, double r_from,
+                                                              const EdgePlace& to, double r_to) const {
+  return enclosures_->tip_azimuth(field(side), side, from, r_from, to, r_to);
 }
 
 SurfacePointT<double> SpaceSheet::flank(int side, double theta, double B) const {

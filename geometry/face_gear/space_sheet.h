@@ -11,52 +11,52 @@
 #include "geometry/face_gear/fillet_blend.h"
 #include "geometry/face_gear/gear.h"
 #include "geometry/face_gear/inverse.h"
-#include "geometry/tooth_space/piece.h"
+#include "geometry/tooth_space/tooth_space.h"
 
 namespace toothpath::face_gear {
 
-/// A point of a piece with derivatives. Gear frame, mm; n is the unit normal out of the material.
-struct PatchPoint {
-  Vec3 p = Vec3::Zero(), n = Vec3::Zero();
-  Vec3 pu = Vec3::Zero(), pv = Vec3::Zero();  ///< dp/du, dp/dv
-  Vec3 nu = Vec3::Zero(), nv = Vec3::Zero();  ///< dn/du, dn/dv
-};
-
-/// Nearest point of a piece (continued beyond its borders) to some point c:  c = p + distance n.
-struct PatchFoot {
-  double u = 0, v = 0, distance = 0;
-  PatchPoint at;
-};
-
-/// Where a flank leaves the tooth through the tip surface.
-struct TipPlace {
-  FlankCoordinates at;
-  double azimuth = 0;  ///< of the flank's own tooth, unwrapped, rad
-};
+using tooth_space::EdgePlace;
+using tooth_space::PatchFoot;
+using tooth_space::PatchPoint;
+class SpaceEnclosures;
 
 /// Parameters: flanks (theta, B), fillets (A, Z), root (fraction from the plus to the minus edge, Z).
 ///
 /// A ring with a modification or a correction gives the displaced flanks: points moved along the plain normals, with
 /// their own exact normals and curvatures; the fillets carry the displacement on and let it fade.
-class SpaceSheet {
+class SpaceSheet final : public tooth_space::ToothSpace {
  public:
   explicit SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring);
 
   [[nodiscard]] const FaceGearRing& ring() const { return ring_; }
   [[nodiscard]] const FaceGearSurface<double>& surface() const { return ring_.surface; }
 
-  /// Point and derivatives; nothing where the piece has no contact (fillet out of its domain, J <= 0 on a flank).
-  [[nodiscard]] std::optional<PatchPoint> at(tooth_space::Piece piece, double u, double v) const;
-  /// The same without derivatives (pu, pv, nu, nv are left unset).
-  [[nodiscard]] std::optional<PatchPoint> point(tooth_space::Piece piece, double u, double v) const;
+  [[nodiscard]] const tooth_space::Outline& outline() const override { return outline_; }
+  [[nodiscard]] double tip(double r) const override { return ring_.surface.z_tip(r); }
+  [[nodiscard]] tooth_space::CurveBend tip_bend(double r_from, double r_to) const override;
+  [[nodiscard]] tooth_space::Borders borders(tooth_space::Piece piece) const override;
+  /// By a pinion equal to the shaper.
+  [[nodiscard]] tooth_space::Borders active(tooth_space::Piece flank) const override;
 
-  /// Newton from (u, v) to the local nearest point; nothing if it does not converge (1e-12 mm) in 30 steps.
-  /// The point may lie beyond the borders of the piece.
-  [[nodiscard]] std::optional<PatchFoot> foot(tooth_space::Piece piece, const Vec3& c, double u, double v) const;
+  /// Nothing where the piece has no contact (fillet out of its domain, J <= 0 on a flank).
+  [[nodiscard]] std::optional<PatchPoint> at(tooth_space::Piece piece, double u, double v) const override;
+  [[nodiscard]] std::optional<PatchPoint> point(tooth_space::Piece piece, double u, double v) const override;
 
-  /// Where the flank of `side` meets the tip surface at radius r; `start` as in invert_flank.
-  [[nodiscard]] std::optional<TipPlace> tip(int side, double r,
-                                            const std::optional<FlankCoordinates>& start = {}) const;
+  /// Newton from (u, v); nothing if it does not converge (1e-12 mm) in 30 steps.
+  [[nodiscard]] std::optional<PatchFoot> foot(tooth_space::Piece piece, const Vec3& c, double u,
+                                              double v) const override;
+  [[nodiscard]] std::optional<EdgePlace> tip_edge(int side, double r,
+                                                  const std::optional<EdgePlace>& near = {}) const override;
+  [[nodiscard]] std::optional<EdgePlace> plain_tip_edge(int side, double r,
+                                                        const std::optional<EdgePlace>& near = {}) const override;
+  [[nodiscard]] std::optional<double> start_v(tooth_space::Piece piece, double u, double r, double distance,
+                                              const std::optional<tooth_space::Near>& near, int attempt) const override;
+  [[nodiscard]] double longest_step(tooth_space::Piece piece, double r) const override;
+  [[nodiscard]] std::optional<tooth_space::Jet> enclosure(tooth_space::Piece piece,
+                                                          const tooth_space::PatchFrame& frame, double half_a,
+                                                          double half_b) const override;
+  [[nodiscard]] std::optional<tooth_space::CurveBend> tip_azimuth(int side, const EdgePlace& from, double r_from,
+                                                                  const EdgePlace& to, double r_to) const override;
 
   /// Places of tooth 0 on both sides, as the functions of the plain surface: flank and fillet of a side, parameters of
   /// the flank's point at (r, z), B at constant theta and Z at constant A for a radius. On plain rings those functions
@@ -76,10 +76,6 @@ class SpaceSheet {
   /// Normal curvature in the tangential direction of `along`, convex positive, 1/mm.
   static double normal_curvature(const PatchPoint& at, const Vec3& along);
 
-  /// Range of u of a piece: flanks theta up to theta_t (the start depends on the radius), fillets [A_t, A_e], root [0,
-  /// 1].
-  [[nodiscard]] double u_end() const { return ring_.surface.shaper.theta_t; }
-
  private:
   using Dual2 = Dual<double, 2>;
   using Second = Dual<Dual2, 2>;  // second derivatives, too
@@ -98,10 +94,13 @@ class SpaceSheet {
                                                             double v) const;
 
   FaceGearRing ring_;
+  tooth_space::Outline outline_;
+  double active_end_ = 0;
   FaceGearSurface<Dual2> dual_;
   FaceGearSurface<Second> second_;
   Turn to_minus_;  ///< from the minus flank of tooth 0 to that of the space 0 | 1
   std::array<std::shared_ptr<const FilletBlend>, 2> blends_;  ///< sides +1 and -1; empty: plain
+  std::shared_ptr<const SpaceEnclosures> enclosures_;
 };
 
 }  // namespace toothpath::face_gear

@@ -346,7 +346,7 @@ void FaceGearCheck::judge_load(std::span<const path::ToolMotion> firsts, std::ve
     if (motions.empty()) return;  // told elsewhere; what the next ones meet is not known
     const tool::Profile mill = tool::profile_of(tool);
     const cut::EngagementQuery stock{mill, tool_of(int(n)).cutting, before,
-                                     [&](const Vec3& p) { return cut::in_blank(gear, p); }, gear.blank_top()};
+                                     [&](const Vec3& p) { return gear.in_blank(p); }, gear.blank_top()};
     const cut::Overload load = cut::overload_along(
         motions, stock,
         {asked.operations[n].feed_mm_min, op.step_down_mm, ball::stock_before(job_.operations, job_.tools, n)});

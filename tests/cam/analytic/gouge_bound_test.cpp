@@ -19,7 +19,7 @@ std::optional<path::ClPath> one_pass(const PlannedJob& job, test::Random& random
   const auto& ring = job.part->space(zone).ring().zone;
   const double length = ring.outer_radius_mm - ring.inner_radius_mm;
   const double from = ring.inner_radius_mm + random(0.1, 0.5) * length, to = from + random(0.05, 0.3) * length;
-  const face_gear::OffsetSheet sheet(job.part->space(zone), R + above, from - 0.2, to + 0.2, 9);
+  const tooth_space::OffsetSheet sheet(job.part->space(zone), R + above, from - 0.2, to + 0.2, 9);
   if (sheet.empty() || sheet.r_from() > from || sheet.r_to() < to) return {};
   const double sigma = random(0.6, 4.4);
   const int steps = 2 + int((to - from) / std::sqrt(8 * R * 1e-3));  // short blocks: little sag

@@ -20,8 +20,8 @@ Sides sides_of(const face_gear::FaceGearParameters& gear, double ball, double sc
   for (std::size_t z = 0; z < gear.zones.size(); ++z) {
     const auto& zone = gear.zones[z];
     const double margin = ball + allowance + 0.1;
-    const face_gear::OffsetSheet sheet(part.space(int(z)), ball + allowance, zone.inner_radius_mm - margin,
-                                       zone.outer_radius_mm + margin, 33);
+    const tooth_space::OffsetSheet sheet(part.space(int(z)), ball + allowance, zone.inner_radius_mm - margin,
+                                         zone.outer_radius_mm + margin, 33);
     ball::FinishingOptions o;
     o.ball_radius_mm = ball;
     o.allowance_mm = allowance;

@@ -38,12 +38,12 @@ ball::FinishingOptions options_of(const path::MillingOperation& op) {
   o.run_out_mm = 0.5 * kBall;
   return o;
 }
-face_gear::OffsetSheet sheet_of(const analytic::GearDistance& part, double ball) {
+tooth_space::OffsetSheet sheet_of(const analytic::GearDistance& part, double ball) {
   const auto& zone = part.space(0).ring().zone;
-  return face_gear::OffsetSheet(part.space(0), ball, zone.inner_radius_mm - ball - 0.1,
-                                zone.outer_radius_mm + ball + 0.1);
+  return tooth_space::OffsetSheet(part.space(0), ball, zone.inner_radius_mm - ball - 0.1,
+                                  zone.outer_radius_mm + ball + 0.1);
 }
-std::vector<ball::BallPass> ends_of(const analytic::GearDistance& part, const face_gear::OffsetSheet& sheet,
+std::vector<ball::BallPass> ends_of(const analytic::GearDistance& part, const tooth_space::OffsetSheet& sheet,
                                     const ball::FinishingOptions& o) {
   return plan_corner_ends(sheet, o, [&](const Vec3& c) { return part.nearest(c, o.ball_radius_mm + 0.01).distance; });
 }
@@ -115,12 +115,12 @@ TEST(CornerEnds, ThereAreNoneWhereTheBallFitsOrBothWallsEndTogether) {
 }
 
 TEST(SheetCorners, AreToldApartByTheRootLandNotByItsMiddle) {
-  EXPECT_EQ(face_gear::corner_of({0.96, 2.503}), face_gear::SheetCorner::plus);
-  EXPECT_EQ(face_gear::corner_of({2.51, 4.03}), face_gear::SheetCorner::minus);
-  EXPECT_EQ(face_gear::corner_of({2.49, 4.03}), face_gear::SheetCorner::minus);
-  EXPECT_EQ(face_gear::corner_of({1.2, 1.8}), face_gear::SheetCorner::plus);
-  EXPECT_EQ(face_gear::corner_of({3.2, 3.9}), face_gear::SheetCorner::minus);
-  EXPECT_EQ(face_gear::corner_of({0.96, 4.04}), face_gear::SheetCorner::both);
+  EXPECT_EQ(tooth_space::corner_of({0.96, 2.503}), tooth_space::SheetCorner::plus);
+  EXPECT_EQ(tooth_space::corner_of({2.51, 4.03}), tooth_space::SheetCorner::minus);
+  EXPECT_EQ(tooth_space::corner_of({2.49, 4.03}), tooth_space::SheetCorner::minus);
+  EXPECT_EQ(tooth_space::corner_of({1.2, 1.8}), tooth_space::SheetCorner::plus);
+  EXPECT_EQ(tooth_space::corner_of({3.2, 3.9}), tooth_space::SheetCorner::minus);
+  EXPECT_EQ(tooth_space::corner_of({0.96, 4.04}), tooth_space::SheetCorner::both);
 }
 
 /// One ring, everything read in the normal section.

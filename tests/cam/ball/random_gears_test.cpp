@@ -50,8 +50,8 @@ ball::FinishingOptions options(const Asked& a) {
 Result<ball::FinishingPasses> passes(const analytic::GearDistance& part, const Asked& a) {
   const auto& zone = part.space(0).ring().zone;
   const double margin = a.ball_radius + a.allowance + 0.1;
-  return plan_finishing(face_gear::OffsetSheet(part.space(0), a.ball_radius + a.allowance,
-                                               zone.inner_radius_mm - margin, zone.outer_radius_mm + margin, 33),
+  return plan_finishing(tooth_space::OffsetSheet(part.space(0), a.ball_radius + a.allowance,
+                                                 zone.inner_radius_mm - margin, zone.outer_radius_mm + margin, 33),
                         options(a));
 }
 
@@ -64,7 +64,7 @@ constexpr double kDeepest = 5e-4;  // of a contact, mm
 /// Distance from a point to the two end edges of the space, sampled a micrometre apart on the exact surface.
 double end_edge_distance(const face_gear::SpaceSheet& space, const Vec3& c) {
   const auto& zone = space.ring().zone;
-  const face_gear::OffsetSheet surface(space, 0, zone.inner_radius_mm, zone.outer_radius_mm, 9);
+  const tooth_space::OffsetSheet surface(space, 0, zone.inner_radius_mm, zone.outer_radius_mm, 9);
   double least = INFINITY;
   constexpr int kPoints = 10000;
   for (const double r : {surface.r_from(), surface.r_to()})
@@ -163,7 +163,7 @@ TEST(SteepGears, EveryRingWithinTheLimitsIsFollowed) {
 TEST(EmptySheet, IsARefusalAndNoPoint) {
   const face_gear::FaceGear gear = test::made(steep_gear(76, 86).gear);
   const face_gear::SpaceSheet space(gear.parameters(), gear.rings()[0]);
-  const face_gear::OffsetSheet sheet(space, 0.9, 40, 50);  // far inside the undercut
+  const tooth_space::OffsetSheet sheet(space, 0.9, 40, 50);  // far inside the undercut
   EXPECT_TRUE(sheet.empty());
   EXPECT_FALSE(sheet.raw(1.5, 45));
   EXPECT_FALSE(sheet.at(2.5, 45));
@@ -179,7 +179,7 @@ TEST(WideBalls, TrimmedCentresKeepTheRadius) {
     const face_gear::FaceGear gear = test::made(test::small_spur());
     const analytic::GearDistance part(gear, 1.7);
     const auto& space = part.space(0);
-    const face_gear::OffsetSheet sheet(space, R, 60 - R - 0.1, 65 + R + 0.1, 33);
+    const tooth_space::OffsetSheet sheet(space, R, 60 - R - 0.1, 65 + R + 0.1, 33);
     ASSERT_TRUE(sheet.has_gaps());
     double cut = 0;
     for (int j = 0; j <= 120; ++j) {
@@ -219,7 +219,7 @@ TEST(RunOut, NeverTurnsBack) {
   ball::FinishingOptions o = options(a);
   o.chord_mm = 0.0002;
   const auto plan =
-      plan_finishing(face_gear::OffsetSheet(part.space(0), a.ball_radius, 91.27 - 0.4, 93.27 + 0.4, 33), o);
+      plan_finishing(tooth_space::OffsetSheet(part.space(0), a.ball_radius, 91.27 - 0.4, 93.27 + 0.4, 33), o);
   ASSERT_TRUE(plan) << plan.error().message;
   for (const auto& pass : plan->passes) {
     double way = 0, across = (pass.points.back().centre - pass.points.front().centre).norm();

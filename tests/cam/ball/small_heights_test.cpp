@@ -1,7 +1,7 @@
 // Heights of micrometres that a plan must keep: a small allowance, the cusps of the fillets, and those that regions
 // have of their own.
 #include "cam/ball/finishing.h"
-#include "geometry/face_gear/offset_sheet.h"
+#include "geometry/tooth_space/offset_sheet.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
 namespace toothpath {
@@ -37,7 +37,7 @@ path::ByRegion<Highest> highest_places(const analytic::GearDistance& part, const
   constexpr int kPlacesOfPiece = 160;
   const auto& space = part.space(0);
   const double inner = space.ring().zone.inner_radius_mm, outer = space.ring().zone.outer_radius_mm;
-  const face_gear::OffsetSheet surface(space, 0, inner, outer, 17);
+  const tooth_space::OffsetSheet surface(space, 0, inner, outer, 17);
   path::ByRegion<Highest> out;
   for (int j = 0; j <= radii; ++j) {
     const double r = inner + (outer - inner) * j / radii;

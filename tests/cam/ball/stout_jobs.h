@@ -102,8 +102,8 @@ inline StoutOutcome plan_stout(const StoutJob& job) {
 inline std::vector<ball::BallPass> stout_passes(const StoutJob& job, const analytic::GearDistance& part) {
   const double R = job.tool.radius_mm();
   const auto& ring = part.space(0).ring().zone;
-  const face_gear::OffsetSheet sheet(part.space(0), R, ring.inner_radius_mm - R - 0.1, ring.outer_radius_mm + R + 0.1,
-                                     33);
+  const tooth_space::OffsetSheet sheet(part.space(0), R, ring.inner_radius_mm - R - 0.1, ring.outer_radius_mm + R + 0.1,
+                                       33);
   ball::FinishingOptions options;
   options.ball_radius_mm = R;
   for (const path::Region region : path::kRegions) options.scallop_mm[region] = job.scallop_mm;

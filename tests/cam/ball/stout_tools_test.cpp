@@ -261,7 +261,7 @@ TEST(StoutTools, APassInStrokesIsCutWhole) {
   const auto& records = plan.value().paths.front().records;
   const double R = job.tool.radius_mm();
   const auto& zone = part.space(0).ring().zone;
-  const face_gear::OffsetSheet surface(part.space(0), 0, zone.inner_radius_mm, zone.outer_radius_mm, 17);
+  const tooth_space::OffsetSheet surface(part.space(0), 0, zone.inner_radius_mm, zone.outer_radius_mm, 17);
   for (int j = 0; j <= 24; ++j)
     for (int k = 0; k <= 120; ++k) {
       const auto at =

@@ -87,7 +87,7 @@ TEST(LargestBall, IsNotLookedForAboveTheOneThatFits) {
 }
 
 TEST(ConcaveCurvature, OfASaddleAndABall) {
-  face_gear::PatchPoint q;  // unit tangents along x and y, normal along z
+  tooth_space::PatchPoint q;  // unit tangents along x and y, normal along z
   q.pu = Vec3::UnitX();
   q.pv = Vec3::UnitY();
   q.n = Vec3::UnitZ();

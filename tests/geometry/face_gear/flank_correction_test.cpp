@@ -202,9 +202,9 @@ TEST_P(CorrectedSheet, TipEdgeLiesOnTheTipSurface) {
       plain(nominal.parameters(), nominal.rings()[0]);
   for (const int side : {1, -1})
     for (const double r : {131.5, 135.0, 144.0}) {
-      const auto tip = sheet.tip(side, r), before = plain.tip(side, r);
+      const auto tip = sheet.tip_edge(side, r), before = plain.tip_edge(side, r);
       ASSERT_TRUE(tip && before);
-      auto p = sheet.at(tooth_space::flank_of(side), tip->at.theta, tip->at.B)->p;
+      auto p = sheet.at(tooth_space::flank_of(side), tip->u, tip->v)->p;
       if (side < 0) p = turned(p, -nominal.pitch());
       EXPECT_NEAR(std::hypot(p.x(), p.y()), r, 1e-9);
       EXPECT_NEAR(p.z(), gear.rings()[0].surface.z_tip(r), 1e-9);

@@ -1,7 +1,7 @@
 // The working surface as one sheet: derivatives, curvature, nearest points.
 #include "geometry/face_gear/space_sheet.h"
 
-#include "geometry/face_gear/offset_sheet.h"
+#include "geometry/tooth_space/offset_sheet.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
 namespace toothpath {
@@ -16,7 +16,7 @@ class Sheet : public testing::TestWithParam<std::string> {
     tooth_space::Piece piece;
     double u, v;
   };
-  static std::vector<Place> places(const face_gear::OffsetSheet& sheet, unsigned seed, int count) {
+  static std::vector<Place> places(const tooth_space::OffsetSheet& sheet, unsigned seed, int count) {
     test::Random random(seed);
     std::vector<Place> out;
     for (int k = 0; k < count; ++k) {
@@ -25,7 +25,7 @@ class Sheet : public testing::TestWithParam<std::string> {
     }
     return out;
   }
-  static face_gear::OffsetSheet surface_of(const face_gear::SpaceSheet& space) {
+  static tooth_space::OffsetSheet surface_of(const face_gear::SpaceSheet& space) {
     return {space, 0.0, space.ring().zone.inner_radius_mm, space.ring().zone.outer_radius_mm, 17};
   }
 };
@@ -108,7 +108,7 @@ TEST_P(Sheet, CurvatureOfFlanksAndFillets) {
 TEST_P(Sheet, PiecesJoinSmoothly) {
   for (const auto& ring : gear.rings()) {
     const face_gear::SpaceSheet space(gear.parameters(), ring);
-    const face_gear::OffsetSheet sheet = surface_of(space);
+    const tooth_space::OffsetSheet sheet = surface_of(space);
     for (double y = 0.05; y < 1; y += 0.1) {
       const double r = sheet.r_from() + y * (sheet.r_to() - sheet.r_from());
       for (int joint = 1; joint < tooth_space::kPieces; ++joint) {
