@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cam/cut/zone_places.h"
+#include "geometry/tooth_space/curvature.h"
 
 namespace toothpath::cut {
 namespace {
@@ -111,11 +112,7 @@ class BallSearch {
 }  // namespace
 
 double concave_curvature(const tooth_space::PatchPoint& at) {
-  const double E = at.pu.squaredNorm(), F = at.pu.dot(at.pv), G = at.pv.squaredNorm();
-  const double L = at.nu.dot(at.pu), M = 0.5 * (at.nu.dot(at.pv) + at.nv.dot(at.pu)), N = at.nv.dot(at.pv);
-  // Principal curvatures, convex positive: roots of k^2 (EG - FF) - k (LG - 2MF + NE) + (LN - MM).
-  const double area = E * G - F * F, half = 0.5 * (L * G - 2 * M * F + N * E) / area, product = (L * N - M * M) / area;
-  const double least = half - std::sqrt(std::max(0.0, half * half - product));
+  const double least = tooth_space::principal_curvatures(at).least;
   return std::isfinite(least) ? std::max(0.0, -least) : 0.0;
 }
 

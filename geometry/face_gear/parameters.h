@@ -4,13 +4,13 @@
 #include <optional>
 #include <vector>
 
+#include "geometry/base/module_plane.h"
 #include "geometry/base/result.h"
 #include "geometry/modification/modification.h"
 
 namespace toothpath::face_gear {
 
-/// The plane in which module, pressure angle and the tooth height coefficients are meant.
-enum class ModulePlane { normal, transverse };
+using toothpath::ModulePlane;  ///< of module, pressure angle and the tooth height coefficients
 
 /// One ring of teeth between two radii. Two rings of opposite hand make a double helical face gear.
 struct FaceGearZone {
