@@ -91,6 +91,17 @@ class Farthest {
   static std::array<std::pair<double, int>, 5> all(std::pair<double, int> v) { return {v, v, v, v, v}; }
 };
 
+/// The program's own hash: of one that we wrote a reason where it does not fit, of a text of others a warning.
+void note_hash(ProgramProof& out, std::string_view text) {
+  out.hash = readback::hash_of_program(text);
+  if (!out.hash || out.hash->fits()) return;
+  const char* what = out.hash->end_line == 0 ? "there is none at the end: part of the program is missing"
+                     : out.hash->ends_agree  ? "the blocks were edited after they were proven"
+                                             : "the one at the end is another: two programs were put together";
+  (out.others_text ? out.warnings : out.reasons)
+      .push_back(fmt::format("line {}: HASH does not fit the text, {}", out.hash->line, what));
+}
+
 /// The text as moves of the axes: of teeth that stand one by one those of the first ones.
 Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& asked, const GearCheck& gear,
                                   app::StageClock& clock) {
@@ -145,15 +156,7 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
   out.warnings = out.conditions.warnings;
   note_worn_out(out, life);
   for (auto& [line, warning] : blanks) out.warnings.push_back(std::move(warning));
-  out.hash = readback::hash_of_program(program.text);
-  if (out.hash && !out.hash->fits()) {
-    const bool own = !asked.paths.empty();
-    const std::string what = out.hash->end_line == 0 ? "there is none at the end: part of the program is missing"
-                             : out.hash->ends_agree  ? "the blocks were edited after they were proven"
-                                                     : "the one at the end is another: two programs were put together";
-    (own ? out.reasons : out.warnings)
-        .push_back(fmt::format("line {}: HASH does not fit the text, {}", out.hash->line, what));
-  }
+  note_hash(out, program.text);
   return out;
 }
 

@@ -8,6 +8,20 @@
 
 namespace toothpath::finger {
 
+namespace {
+/// The cuts that come within `reach` of a cone distance.
+std::vector<FingerCut> cuts_near(const bevel_gear::BevelGear& gear, std::span<const FingerCut> cuts, double ell,
+                                 double reach) {
+  std::vector<FingerCut> near;
+  for (const FingerCut& cut : cuts) {
+    const double a = cone_pose(gear, cut.motion->tip_from, cut.motion->axis_from, 0.0).R_c;
+    const double b = cone_pose(gear, cut.motion->tip_to, cut.motion->axis_to, 0.0).R_c;
+    if (std::min(a, b) < ell + reach && std::max(a, b) > ell - reach) near.push_back(cut);
+  }
+  return near;
+}
+}  // namespace
+
 RidgeResult highest_ridge(const bevel_gear::BevelGear& gear, std::span<const FingerCut> cuts,
                           const FingerTool& reference, int columns, int rows_across) {
   RidgeResult out;
@@ -24,14 +38,7 @@ RidgeResult highest_ridge(const bevel_gear::BevelGear& gear, std::span<const Fin
   std::vector<Row> rows(stations.size());
   tbb::parallel_for(std::size_t{0}, stations.size(), [&](std::size_t i) {
     const double ell = stations[i];
-    std::vector<FingerCut> near;
-    for (const FingerCut& cut : cuts) {
-      const double a = cone_pose(gear, cut.motion->tip_from, cut.motion->axis_from, 0.0).R_c;
-      const double b = cone_pose(gear, cut.motion->tip_to, cut.motion->axis_to, 0.0).R_c;
-      if (std::min(a, b) < ell + reference.solid.largest_radius() &&
-          std::max(a, b) > ell - reference.solid.largest_radius())
-        near.push_back(cut);
-    }
+    const std::vector<FingerCut> near = cuts_near(gear, cuts, ell, reference.solid.largest_radius());
     const double e_L = reference.walls[0].theta_at(ell) / sd, e_U = reference.walls[1].theta_at(ell) / sd;
     const auto left = [&](double e) {
       const Vec3 foot = bevel_gear::blank_point(ell, -h_f, e, sd, cd), normal = gear.axis(e);
