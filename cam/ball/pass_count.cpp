@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/tooth_space/curvature.h"
+
 namespace toothpath::ball {
 namespace {
 
@@ -80,7 +82,7 @@ double PassCount::sigma_at(std::size_t j, double count) const {
 /// Centre spacing across the pass for the asked cusp at a contact point.
 double PassCount::spacing(double sigma, const tooth_space::SheetPoint& s, const Vec3& feed) const {
   const Vec3 across = s.contact.n.cross(feed);
-  const double k = face_gear::SpaceSheet::normal_curvature(s.contact, across);
+  const double k = tooth_space::normal_curvature(s.contact, across);
   const double regular = std::max(1e-6, (1 + k * sheet_.delta()) / (1 + k * o_.allowance_mm));
   return std::sqrt(8 * o_.scallop(sigma) * o_.ball_radius_mm * regular);
 }

@@ -9,7 +9,7 @@
 namespace toothpath::ball {
 
 /// What is asked of a pass. `sigma`: its place across the sheet over the radius of the ball centre (0 to 5,
-/// geometry/face_gear/space_sheet.h).
+/// geometry/tooth_space/offset_sheet.h).
 struct SheetPassAsked {
   std::function<double(double)> sigma;
   std::function<double(double)> other;  ///< along a corner the ball touches here, too: the pass is as long as either

@@ -5,22 +5,20 @@
 namespace toothpath::cut {
 
 ZonePlaces::ZonePlaces(const analytic::GearDistance& part, int zone)
-    : space_(part.space(zone)),
-      sheet_(space_, 0.0, space_.ring().zone.inner_radius_mm, space_.ring().zone.outer_radius_mm, 49) {}
+    : space_(part.space(zone)), sheet_(space_, 0.0, space_.outline().s_from, space_.outline().s_to, 49) {}
 
 double ZonePlaces::radius(double share) const {
-  const auto& z = space_.ring().zone;
-  return std::clamp(z.inner_radius_mm + share * (z.outer_radius_mm - z.inner_radius_mm), sheet_.r_from(),
-                    sheet_.r_to());
+  const auto& ring = space_.outline();
+  return std::clamp(ring.s_from + share * (ring.s_to - ring.s_from), sheet_.r_from(), sheet_.r_to());
 }
 
 /// sigma where the flank leaves through the tip surface.
 double ZonePlaces::tip_sigma(bool plus, double r) const {
-  const double z_tip = space_.surface().z_tip(r);
+  const double tip = space_.tip(r);
   double out = plus ? 0.0 : 5.0, in = plus ? 1.0 : 4.0;
   const auto above = [&](double sigma) {
     const auto s = at(sigma, r);
-    return !s || s->contact.p.z() > z_tip;
+    return !s || space_.outline().chart.up(s->contact.p) > tip;
   };
   if (!above(out)) return out;
   for (int k = 0; k < 40; ++k) {

@@ -26,7 +26,7 @@ class ZonePlaces {
  private:
   [[nodiscard]] double tip_sigma(bool plus, double r) const;
 
-  const face_gear::SpaceSheet& space_;
+  const tooth_space::ToothSpace& space_;
   tooth_space::OffsetSheet sheet_;
 };
 

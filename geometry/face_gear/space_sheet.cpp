@@ -387,12 +387,4 @@ std::optional<PatchFoot> SpaceSheet::foot(Piece piece, const Vec3& c, double u, 
   return {};
 }
 
-double SpaceSheet::normal_curvature(const PatchPoint& at, const Vec3& along) {
-  const Vec3 t = along - at.n * at.n.dot(along);
-  const double uu = at.pu.squaredNorm(), uv = at.pu.dot(at.pv), vv = at.pv.squaredNorm();
-  const double tu = t.dot(at.pu), tv = t.dot(at.pv), det = uu * vv - uv * uv;
-  const double a = (tu * vv - tv * uv) / det, b = (tv * uu - tu * uv) / det;
-  return (at.nu * a + at.nv * b).dot(t) / t.squaredNorm();
-}
-
 }  // namespace toothpath::face_gear

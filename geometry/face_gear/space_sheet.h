@@ -73,9 +73,6 @@ class SpaceSheet final : public tooth_space::ToothSpace {
   /// The same of a fillet; null where it is plain.
   [[nodiscard]] const FilletBlend* blend(int side) const { return blends_[side > 0 ? 0 : 1].get(); }
 
-  /// Normal curvature in the tangential direction of `along`, convex positive, 1/mm.
-  static double normal_curvature(const PatchPoint& at, const Vec3& along);
-
  private:
   using Dual2 = Dual<double, 2>;
   using Second = Dual<Dual2, 2>;  // second derivatives, too

@@ -1,6 +1,7 @@
 // The working surface as one sheet: derivatives, curvature, nearest points.
 #include "geometry/face_gear/space_sheet.h"
 
+#include "geometry/tooth_space/curvature.h"
 #include "geometry/tooth_space/offset_sheet.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
@@ -65,8 +66,8 @@ TEST_P(Sheet, FootReturnsToTheSurfacePoint) {
       const auto q = space.at(at.piece, at.u, at.v);
       ASSERT_TRUE(q);
       // Below the smallest hollow radius of curvature the foot is unique.
-      const double k_u = face_gear::SpaceSheet::normal_curvature(*q, q->pu),
-                   k_v = face_gear::SpaceSheet::normal_curvature(*q, q->n.cross(q->pu));
+      const double k_u = tooth_space::normal_curvature(*q, q->pu),
+                   k_v = tooth_space::normal_curvature(*q, q->n.cross(q->pu));
       const double hollow = std::max({-k_u, -k_v, 1e-9}) * 1.5;
       const double d = random(-0.2, 1) * std::min(0.5 * m, 0.5 / hollow);
       const bool angle_v = is_flank(at.piece);
@@ -97,8 +98,7 @@ TEST_P(Sheet, CurvatureOfFlanksAndFillets) {
       for (const double angle : {0.0, 0.7, 1.6, 2.5}) {
         const double c = std::cos(angle), s = std::sin(angle);
         const double expected = c * c * H.ee + 2 * c * s * H.el + s * s * H.ll;
-        EXPECT_NEAR(face_gear::SpaceSheet::normal_curvature(*q, e * c + l * s), expected,
-                    1e-8 * (1 + std::abs(expected)))
+        EXPECT_NEAR(tooth_space::normal_curvature(*q, e * c + l * s), expected, 1e-8 * (1 + std::abs(expected)))
             << to_string(at.piece);
       }
     }
