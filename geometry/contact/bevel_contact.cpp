@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "geometry/base/angle.h"
 #include "geometry/contact/tooth_contact.h"
@@ -25,8 +26,7 @@ class Roll {
   }
 
   Result<BevelContact> run() {
-    meet();
-    if (first_ > last_) return fail("the walls of sigma = {:+d} never meet", sigma_);
+    if (!meet()) return never();
     BevelContact out;
     out.sigma = sigma_;
     pair_error();
@@ -35,6 +35,15 @@ class Roll {
     mismatch(out);
     out.patterns = std::move(patterns_);
     return out;
+  }
+
+  Result<std::vector<double>> mismatch_alone() {
+    if (!meet()) return never();
+    BevelContact unused;
+    mismatch(unused);
+    std::vector<double> all;
+    for (const BevelPattern& g : patterns_) all.insert(all.end(), g.mismatch_mm.begin(), g.mismatch_mm.end());
+    return all;
   }
 
  private:
@@ -54,8 +63,11 @@ class Roll {
     return pair_.error_at(half, sigma_, point, phi_2, start);
   }
 
-  /// When and how far from the pinion every place is: about the turn at which it passes the pitch plane.
-  void meet() {
+  [[nodiscard]] Diagnostic never() const { return fail("the walls of sigma = {:+d} never meet", sigma_); }
+
+  /// When and how far from the pinion every place is: about the turn at which it passes the pitch plane. False:
+  /// nowhere.
+  bool meet() {
     const int window = static_cast<int>(std::ceil(1.4 * options_.steps));
     for (const BevelPattern& g : patterns_) {
       std::vector<Meeting> of_places;
@@ -75,6 +87,7 @@ class Roll {
       }
       meetings_.push_back(std::move(of_places));
     }
+    return first_ <= last_;
   }
 
   /// Least error over all turns: golden section about the best position. Nothing where the pinion's flank ends before.
@@ -266,11 +279,24 @@ BevelPattern wheel_grid(const BevelPair& pair, int half, int sigma, int rows, in
   return g;
 }
 
+namespace {
+
+std::optional<Diagnostic> problem_of(const BevelContactOptions& options) {
+  if (options.rows >= 3 && options.columns >= 3 && options.steps >= 4) return std::nullopt;
+  return fail("grid of {} x {} places and {} positions: at least 3 x 3 and 4 are needed", options.rows, options.columns,
+              options.steps);
+}
+
+}  // namespace
+
 Result<BevelContact> bevel_contact(const BevelPair& pair, int sigma, const BevelContactOptions& options) {
-  if (options.rows < 3 || options.columns < 3 || options.steps < 4)
-    return fail("grid of {} x {} places and {} positions: at least 3 x 3 and 4 are needed", options.rows,
-                options.columns, options.steps);
+  if (auto problem = problem_of(options)) return *std::move(problem);
   return Roll(pair, sigma, options).run();
+}
+
+Result<std::vector<double>> bevel_mismatch(const BevelPair& pair, int sigma, const BevelContactOptions& options) {
+  if (auto problem = problem_of(options)) return *std::move(problem);
+  return Roll(pair, sigma, options).mismatch_alone();
 }
 
 }  // namespace toothpath::contact

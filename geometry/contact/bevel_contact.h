@@ -207,6 +207,10 @@ struct BevelContact {
 [[nodiscard]] Result<BevelContact> bevel_contact(const BevelPair& pair, int sigma,
                                                  const BevelContactOptions& options = {});
 
+/// BevelContact::patterns' mismatch_mm of all halves, one after the other, and nothing else: a small part of the work.
+[[nodiscard]] Result<std::vector<double>> bevel_mismatch(const BevelPair& pair, int sigma,
+                                                         const BevelContactOptions& options = {});
+
 /// What one change does to the mismatch of both walls together; a constant of each wall (play) does not count.
 struct MismatchChange {
   std::string name, unit;

@@ -21,9 +21,9 @@ Result<Field> field_of(const bevel_gear::BevelGear& pinion, const bevel_gear::Be
   if (!pair) return pair.error();
   Field field;
   for (const int sigma : {1, -1}) {
-    const auto contact = bevel_contact(*pair, sigma, options);
-    if (!contact) return contact.error();
-    for (const auto& g : contact->patterns) field.insert(field.end(), g.mismatch_mm.begin(), g.mismatch_mm.end());
+    const auto of_wall = bevel_mismatch(*pair, sigma, options);
+    if (!of_wall) return of_wall.error();
+    field.insert(field.end(), of_wall->begin(), of_wall->end());
   }
   return field;
 }
