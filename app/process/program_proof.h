@@ -76,7 +76,7 @@ struct ProgramProof {
   std::vector<std::string> warnings;                 ///< what may be a choice
 
   bool others_text = false;  ///< no path is known: what its cuts take off is judged, too
-  bool swept = true;  ///< false: the axes leave their travels, and nothing below is known
+  bool swept = true;         ///< false: the axes leave their travels, and nothing below is known
   proof::GougeResult gouge;
   std::vector<proof::ExcessResult> excess;         ///< one an operation
   std::optional<proof::ExcessResult> finished;     ///< the finished surface; none: no operation finishes it
