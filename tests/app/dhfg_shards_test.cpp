@@ -98,8 +98,8 @@ TEST(StudyDhfg, InShardsAndAfterAKillTheSameAsInOnePiece) {
   };
   EXPECT_NE(merged_as("\"teeth\":0}", "\"teeth\":7}").find("samples.1of1.jsonl:2:1: error: \"found.levels\" are not"),
             std::string::npos);
-  EXPECT_NE(merged_as("\"version\":1", "\"version\":2")
-                .find("samples.1of1.jsonl:1:1: error: version = 2 of study dhfg, and this program has version 1"),
+  EXPECT_NE(merged_as("\"version\":2", "\"version\":3")
+                .find("samples.1of1.jsonl:1:1: error: version = 3 of study dhfg, and this program has version 2"),
             std::string::npos);
 
   write_file(file, replaced(kSmallStudy, "half_face = 6.0", "half_face = 6.5"));

@@ -192,7 +192,7 @@ TEST(ContactOptimise, EveryKeyIsNeeded) {
     ++rolled;
   }
   EXPECT_GE(rolled, 3);
-  EXPECT_LT(found.at("removal_um").get<double>(), 60);
+  EXPECT_LT(found.at("removal_um").get<double>(), 70);  // the margin holds at every edge
 }
 
 /// Where there is none it says so, with what is in the way, and writes no job.
