@@ -19,7 +19,8 @@ TEST(LoadedCommand, UnderLoad) {
   EXPECT_EQ(loaded.at("pinion_axial"), "floating");
   ASSERT_EQ(loaded.at("flanks").size(), 2u);
   for (const Json& flank : loaded.at("flanks")) {
-    EXPECT_NEAR(flank.at("outer_share").at("mean").get<double>(), 0.5, 1e-9);
+    // Axial forces are equal; edges of teeth whose line has left the flank have another lever for the same axial force.
+    EXPECT_NEAR(flank.at("outer_share").at("mean").get<double>(), 0.5, 1e-5);
     EXPECT_NEAR(flank.at("axial_N").at("most").get<double>(), 0, 1e-6);
     EXPECT_GT(flank.at("stiffness_N_um").at("least").get<double>(), 300);
     EXPECT_GT(flank.at("transmission_error_urad").at("range").get<double>(), 0.01);
