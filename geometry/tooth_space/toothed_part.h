@@ -1,0 +1,46 @@
+// A whole toothed part, as planners and proofs ask for it: its rings of teeth, the turned body that they stand on and
+// the blank that they are cut from.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "geometry/base/angle.h"
+#include "geometry/base/vec.h"
+#include "geometry/tooth_space/tooth_space.h"
+
+namespace toothpath::tooth_space {
+
+/// Asked from several threads. All zones share one chart direction and one number of teeth; they follow each other with
+/// rising s. Lengths in mm; heights are h of the chart.
+class ToothedPart {
+ public:
+  virtual ~ToothedPart() = default;
+
+  [[nodiscard]] virtual int teeth() const = 0;
+  [[nodiscard]] virtual int zones() const = 0;
+  /// The flanks to aim at, corrections included.
+  [[nodiscard]] virtual const ToothSpace& space(int zone) const = 0;
+  /// By which tolerances scale: the module.
+  [[nodiscard]] virtual double module_mm() const = 0;
+  /// Lowest place of the tooth spaces, over all zones.
+  [[nodiscard]] virtual double lowest_root() const = 0;
+  /// Floor of the relief groove between two zones; nothing where there is one zone.
+  [[nodiscard]] virtual std::optional<double> groove_floor() const = 0;
+  /// Highest place of the uncut blank.
+  [[nodiscard]] virtual double blank_top() const = 0;
+  /// Does the uncut blank hold this place?
+  [[nodiscard]] virtual bool in_blank(const Vec3& p) const = 0;
+  /// The key in [gear] that moves an end of a zone: "zone[0].inner_radius".
+  [[nodiscard]] virtual std::string end_key(int zone, bool outer) const = 0;
+
+  [[nodiscard]] double pitch() const { return kTwoPi / teeth(); }
+  [[nodiscard]] const Chart& chart() const { return space(0).outline().chart; }
+
+ protected:
+  ToothedPart() = default;
+  ToothedPart(const ToothedPart&) = default;
+  ToothedPart& operator=(const ToothedPart&) = default;
+};
+
+}  // namespace toothpath::tooth_space
