@@ -63,6 +63,8 @@ struct Outline {
   double pitch = 0;                           ///< rad
   double s_from = 0, s_to = 0;                ///< ends of the ring
   const char *from = "inner", *to = "outer";  ///< and their names
+  const char* along = "radius";               ///< what s is called in messages,
+  double told = 1;                            ///< and its sign there: s = -z is told as z
   double join = 1e-9;  ///< a foot this far beyond the border of its piece (in u) still counts: how well pieces join
 };
 

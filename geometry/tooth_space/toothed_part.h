@@ -2,10 +2,12 @@
 // the blank that they are cut from.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/refusal.h"
 #include "geometry/base/vec.h"
 #include "geometry/tooth_space/tooth_space.h"
 
@@ -31,8 +33,17 @@ class ToothedPart {
   [[nodiscard]] virtual double blank_top() const = 0;
   /// Does the uncut blank hold this place?
   [[nodiscard]] virtual bool in_blank(const Vec3& p) const = 0;
-  /// The key in [gear] that moves an end of a zone: "zone[0].inner_radius".
-  [[nodiscard]] virtual std::string end_key(int zone, bool outer) const = 0;
+  /// Why this gear type takes no question about a zone: key within [gear] and message; none where its surfaces reach.
+  [[nodiscard]] virtual std::optional<Refusal> refusal(int /*zone*/) const { return {}; }
+  /// Of a zone that begins close to where its flanks begin: that, in words; else empty.
+  [[nodiscard]] virtual std::string close_to_limit(int /*zone*/) const { return {}; }
+  /// Of such a zone: the same part where it begins farther out by a share of the module, and what it would take in
+  /// words. `part`: null where that is no gear.
+  struct OtherBegin {
+    std::shared_ptr<const ToothedPart> part;
+    std::string words;
+  };
+  [[nodiscard]] virtual std::optional<OtherBegin> begun_later(int /*zone*/, double /*share*/) const { return {}; }
 
   [[nodiscard]] double pitch() const { return kTwoPi / teeth(); }
   [[nodiscard]] const Chart& chart() const { return space(0).outline().chart; }
