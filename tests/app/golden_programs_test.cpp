@@ -11,10 +11,11 @@
 
 #include "app/job/file.h"
 #include "app/process/bevel/files.h"
-#include "app/process/face/proof.h"
+#include "app/process/face/body.h"
 #include "app/process/face/shaper_setup.h"
 #include "app/process/gear_of_job.h"
 #include "app/process/proof_limits.h"
+#include "cam/analytic/gouge_check.h"
 #include "cam/finger/check.h"
 #include "cam/finger/milling.h"
 #include "cam/plan/face_gear.h"
@@ -112,7 +113,7 @@ Planned plan_face(const job::Job& job) {
     if (!passed) return out.error = passed.error().message, out;
     out.checked.push_back(std::move(*passed));
   }
-  out.body = face::clearance_body(gear);
+  out.body = face::body_of(gear).links;
   out.teeth = gear.parameters().teeth;
   return out;
 }
