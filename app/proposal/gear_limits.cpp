@@ -7,6 +7,7 @@
 #include "cam/cut/unreached.h"
 #include "cam/plan/first_ball.h"
 #include "geometry/base/angle.h"
+#include "geometry/face_gear/part.h"
 
 namespace toothpath::proposal {
 namespace {
@@ -94,7 +95,7 @@ FaceFacts face_facts(const face_gear::FaceGear& gear) {
       if (const auto root = face_gear::root_height(ring.surface, r))
         facts.depth = std::max(facts.depth, ring.surface.z_tip(r) - *root);
   const double m = gear.parameters().module_mm, reach = 3 * m;
-  const analytic::GearDistance part(gear, reach);
+  const analytic::GearDistance part(face_gear::part_of(gear), reach);
   if (part.refusal()) return facts;
   facts.largest_ball = 2 * cut::largest_reaching_ball(part, 1.5 * m).radius_mm;
   facts.first_ball = plan::first_ball_mm(part, kRoughingAllowance * m, reach);

@@ -28,15 +28,19 @@ Vec2 extent(const BodyQuad& q) {
 
 bool is_round(const BodySurface& s) { return s.end() || s.piece == Piece::groove; }
 
-/// Radius, middle azimuth and width of the arc that a quad of an end or of the floor spans.
+/// Radius, middle azimuth and width of the arc that a quad of an end or of the floor spans, and how far its radius
+/// changes along the arc.
 struct Arc {
-  double r = 0, width = 0;
+  double r = 0, width = 0, slant = 0;
   Vec3 outwards = Vec3::UnitX();
 };
-Arc arc_of(const BodyQuad& q) {
+Arc arc_of(const BodyQuad& q, const tooth_space::Chart& chart) {
   Arc arc;
   const Vec3 &a = q.corner[0], &b = q.corner[1];
-  for (const Vec3& c : q.corner) arc.r = std::max(arc.r, std::hypot(c.x(), c.y()));
+  for (const Vec3& c : q.corner) arc.r = std::max(arc.r, radius(c));
+  if (chart.sine > 0)
+    arc.slant =
+        std::max(std::abs(radius(b) - radius(a)), std::abs(radius(q.corner[2]) - radius(q.corner[3])));
   arc.width = std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y()));
   arc.outwards = Vec3(a.x() + b.x(), a.y() + b.y(), 0).normalized();
   return arc;
@@ -44,7 +48,7 @@ Arc arc_of(const BodyQuad& q) {
 
 }  // namespace
 
-BodyPatches::BodyPatches(const face_gear::SpaceSheet& space, BodyRing ring, std::size_t cells)
+BodyPatches::BodyPatches(const tooth_space::ToothSpace& space, BodyRing ring, std::size_t cells)
     : space_(space), ring_(std::move(ring)), cells_(cells), boxes_(cells) {}
 
 void BodyPatches::add_block(tooth_space::Piece piece, const std::vector<SheetCell>& cells) {
@@ -178,7 +182,7 @@ BodyQuad BodyPatches::made(const Cell& cell, const std::array<Vec2, 4>& at) cons
         q.stands[k] = true;
         break;
       case Piece::groove:
-        q.corner[k] = on_cylinder(x.y(), x.x(), ring_.floor_mm);
+        q.corner[k] = chart().place(x.y(), x.x(), ring_.floor_mm);
         q.stands[k] = true;
         break;
       default: {
@@ -197,7 +201,7 @@ BodyQuad BodyPatches::made(const Cell& cell, const std::array<Vec2, 4>& at) cons
 /// where it is the lower side of a quad; a stretch that leaves its azimuths is held by a rectangle.
 BodyQuad BodyPatches::end_quad(const Cell& cell, const std::array<Vec2, 4>& at) const {
   const std::size_t n = cell.surface.outer ? 1 : 0;
-  const double r = n == 1 ? ring_.r_out : ring_.r_in, sag = ring_.border_sag[n], z_tip = space_.surface().z_tip(r);
+  const double at_s = n == 1 ? ring_.s_to : ring_.s_from, sag = ring_.border_sag[n], tip = space_.tip(at_s);
   auto s = border_stretch(ring_.border[n], at[0].x(), at[1].x());
   const bool turns_back =
       s.least_azimuth < std::min(s.from.x(), s.to.x()) || s.most_azimuth > std::max(s.from.x(), s.to.x());
@@ -210,7 +214,7 @@ BodyQuad BodyPatches::end_quad(const Cell& cell, const std::array<Vec2, 4>& at) 
   }
   if (s.from.x() > s.to.x()) std::swap(s.from, s.to);
   const auto place = [&](const Vec2& top, double share, double shift) {
-    return on_cylinder(r, top.x(), ring_.base_mm + share * (std::min(top.y() + shift, z_tip) - ring_.base_mm));
+    return chart().place(at_s, top.x(), ring_.base_mm + share * (std::min(top.y() + shift, tip) - ring_.base_mm));
   };
   BodyQuad q;
   q.at = at;
@@ -224,7 +228,8 @@ Vec2 BodyPatches::sides(const Cell& cell, const BodyQuad& q) const {
   Vec2 out(std::max((c[1] - c[0]).norm(), (c[2] - c[3]).norm()), std::max((c[3] - c[0]).norm(), (c[2] - c[1]).norm()));
   if (cell.surface.end())
     out.y() = std::min(
-        out.y(), (q.at[2].y() - q.at[0].y()) * (std::max(c[2].z(), c[3].z()) - std::min(ring_.base_mm, c[0].z())));
+        out.y(), (q.at[2].y() - q.at[0].y()) * (std::max(chart().up(c[2]), chart().up(c[3])) -
+                                                std::min(ring_.base_mm, chart().up(c[0]))));
   return out;
 }
 
@@ -299,8 +304,9 @@ BodyHull BodyPatches::outline(std::size_t index, const BodyQuad& q) const {
 double BodyPatches::above(std::size_t index, const BodyQuad& q, const Vec3& g) const {
   const Cell& cell = cells_[index];
   if (is_round(cell.surface)) {
-    const Arc arc = arc_of(q);
-    return 0.125 * arc.r * arc.width * arc.width * (std::max(0.0, -g.dot(arc.outwards)) + 0.5 * arc.width);
+    const Arc arc = arc_of(q, chart());
+    return 0.125 * arc.r * arc.width * arc.width * (std::max(0.0, -g.dot(arc.outwards)) + 0.5 * arc.width) +
+           0.25 * arc.slant * arc.width;
   }
   const Vec2 size = extent(q);
   return blocks_[cell.block].bend.above(g, size.x(), size.y());
@@ -309,8 +315,8 @@ double BodyPatches::above(std::size_t index, const BodyQuad& q, const Vec3& g) c
 double BodyPatches::sag(std::size_t index, const BodyQuad& q) const {
   const Cell& cell = cells_[index];
   if (is_round(cell.surface)) {
-    const Arc arc = arc_of(q);
-    return 0.125 * arc.r * arc.width * arc.width;
+    const Arc arc = arc_of(q, chart());
+    return 0.125 * arc.r * arc.width * arc.width + 0.25 * arc.slant * arc.width;
   }
   const Vec2 size = extent(q);
   return blocks_[cell.block].bend.sag(size.x(), size.y());
@@ -320,12 +326,12 @@ std::optional<Vec3> BodyPatches::settled(std::size_t index, const Vec2& at) cons
   const Cell& cell = cells_[index];
   switch (cell.surface.piece) {
     case Piece::tip: return land(at.x(), at.y());
-    case Piece::groove: return on_cylinder(at.y(), at.x(), ring_.floor_mm);
+    case Piece::groove: return chart().place(at.y(), at.x(), ring_.floor_mm);
     case Piece::end: {
       const std::size_t n = cell.surface.outer ? 1 : 0;
       const Vec2 top = border_place(ring_.border[n], at.x());
-      return on_cylinder(n == 1 ? ring_.r_out : ring_.r_in, top.x(),
-                         ring_.base_mm + at.y() * (top.y() - ring_.base_mm));
+      return chart().place(n == 1 ? ring_.s_to : ring_.s_from, top.x(),
+                           ring_.base_mm + at.y() * (top.y() - ring_.base_mm));
     }
     default: return settled_sheet(blocks_[cell.block], blocks_[cell.block].frame.uv(at));
   }
@@ -333,9 +339,9 @@ std::optional<Vec3> BodyPatches::settled(std::size_t index, const Vec2& at) cons
 
 std::optional<Vec3> BodyPatches::settled_sheet(const Block& block, Vec2 uv) const {
   const auto piece = block.piece;
-  const auto lacks = [&](const Vec3& p) {  // in r and z
-    const double r = std::hypot(p.x(), p.y()), inside = std::clamp(r, ring_.r_in, ring_.r_out);
-    return Vec2(inside - r, std::min(0.0, space_.surface().z_tip(inside) - p.z()));
+  const auto lacks = [&](const Vec3& p) {  // in s and h
+    const double s = chart().along(p), inside = std::clamp(s, ring_.s_from, ring_.s_to);
+    return Vec2(inside - s, std::min(0.0, space_.tip(inside) - chart().up(p)));
   };
   auto q = space_.point(piece, uv.x(), uv.y());
   for (int k = 0; q && k < kSteps; ++k) {
@@ -343,14 +349,12 @@ std::optional<Vec3> BodyPatches::settled_sheet(const Block& block, Vec2 uv) cons
     if (lack.cwiseAbs().maxCoeff() < 1e-10) break;
     const auto d = space_.at(piece, uv.x(), uv.y());
     if (!d) return {};
-    const double r = std::hypot(d->p.x(), d->p.y());
-    const double ru = (d->p.x() * d->pu.x() + d->p.y() * d->pu.y()) / r,
-                 rv = (d->p.x() * d->pv.x() + d->p.y() * d->pv.y()) / r;
+    const double su = chart().along(d->p, d->pu), sv = chart().along(d->p, d->pv);
     if (std::abs(lack.y()) < 1e-10) {
-      uv.y() += lack.x() / rv;
-    } else {  // to the tip edge, at the radius where it stands or at the end
-      const double det = ru * d->pv.z() - rv * d->pu.z();
-      uv += Vec2(lack.x() * d->pv.z() - rv * lack.y(), ru * lack.y() - lack.x() * d->pu.z()) / det;
+      uv.y() += lack.x() / sv;
+    } else {  // to the tip edge, at the station where it stands or at the end
+      const double hu = chart().up(d->p, d->pu), hv = chart().up(d->p, d->pv), det = su * hv - sv * hu;
+      uv += Vec2(lack.x() * hv - sv * lack.y(), su * lack.y() - lack.x() * hu) / det;
     }
     q = space_.point(piece, uv.x(), uv.y());
   }

@@ -3,8 +3,8 @@
 // shrinks with the square of the quad; every place that is told lies on the surface itself.
 //
 // Sheet: the analytic patches, bent as cam/analytic/patch_bounds.h proves, cut off at the tip surface and the ends.
-// Land: between the two tip edges of tooth 0, whose azimuths are solved at every radius. Ends: cylinders below the
-// profile of the sheet. Groove floor: a plane.
+// Land: between the two tip edges of tooth 0, whose azimuths are solved at every station. Ends: surfaces of
+// constant s below the profile of the sheet. Groove floor: of constant h.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ struct BodySurface {
 };
 
 /// A quad of a cell. Parameters: sheet: coordinates of the frame of its block; land: (share from the minus to the plus
-/// edge, radius); ends: (index on the border, share of the height); floor: (azimuth, radius). Corners run around the
+/// edge, s); ends: (index on the border, share of the height); floor: (azimuth, s). Corners run around the
 /// quad.
 struct BodyQuad {
   std::array<Vec2, 4> at;
@@ -50,12 +50,12 @@ struct BodyBox {
 
 /// What the patches of a ring are made of.
 struct BodyRing {
-  double r_in = 0, r_out = 0;
+  double s_from = 0, s_to = 0;
   double base_mm = 0;   ///< lower border of the end faces
   double floor_mm = 0;  ///< height of the groove floor
-  std::vector<double> table_r;
+  std::vector<double> table_s;
   std::array<std::vector<std::optional<tooth_space::EdgePlace>>, 2>
-      tip;  ///< plus and minus edge of tooth 0 over `table_r`
+      tip;  ///< plus and minus edge of tooth 0 over `table_s`
   std::array<std::vector<std::optional<CurveBend>>, 2>
       tip_bend;                             ///< of their azimuths, from place to place; none: not proven
   std::array<std::vector<double>, 2> edge;  ///< their azimuths, also where there is no such place
@@ -71,7 +71,7 @@ class BodyPatches {
     std::array<Vec3, 4> corner;
   };
 
-  BodyPatches(const face_gear::SpaceSheet& space, BodyRing ring, std::size_t cells);
+  BodyPatches(const tooth_space::ToothSpace& space, BodyRing ring, std::size_t cells);
 
   /// Cells of one piece that lie beside each other and share the bound of their second derivatives.
   void add_block(tooth_space::Piece piece, const std::vector<SheetCell>& cells);
@@ -129,15 +129,16 @@ class BodyPatches {
   [[nodiscard]] Vec2 bends(const Cell& cell, const BodyQuad& quad) const;
   [[nodiscard]] BodyQuad made(const Cell& cell, const std::array<Vec2, 4>& at) const;
   [[nodiscard]] BodyQuad end_quad(const Cell& cell, const std::array<Vec2, 4>& at) const;
-  [[nodiscard]] double edge_azimuth(int which, double r) const;
-  [[nodiscard]] Vec3 land(double share, double r) const;
-  [[nodiscard]] PatchBend land_bend(double r_from, double r_to);
+  [[nodiscard]] const tooth_space::Chart& chart() const { return space_.outline().chart; }
+  [[nodiscard]] double edge_azimuth(int which, double s) const;
+  [[nodiscard]] Vec3 land(double share, double s) const;
+  [[nodiscard]] PatchBend land_bend(double s_from, double s_to);
   [[nodiscard]] PatchBend sheet_bend(const Block& block, double half_a, double half_b);
   [[nodiscard]] double cell_sag(std::size_t index) const;
   [[nodiscard]] std::optional<Vec3> settled_sheet(const Block& block, Vec2 uv) const;
   void keep(std::size_t index, Cell cell);
 
-  const face_gear::SpaceSheet& space_;
+  const tooth_space::ToothSpace& space_;
   BodyRing ring_;
   std::vector<Cell> cells_;
   std::vector<BodyBox> boxes_;  ///< of the cells

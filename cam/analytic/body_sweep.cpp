@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cam/analytic/body_patches.h"
+#include "cam/analytic/roof.h"
 #include "cam/path/motion_blend.h"
 #include "geometry/base/angle.h"
 
@@ -138,7 +139,7 @@ class CellSearch {
 
   /// Each once: zone, tooth, cell in order.
   [[nodiscard]] std::vector<NearCell> cells() const {
-    const double pitch = part_.gear().pitch();
+    const double pitch = part_.part().pitch();
     const View first = course_.view(0), last = course_.view(1);
     std::vector<NearCell> out;
     Target cell{-1, 0, 0};
@@ -180,17 +181,21 @@ class CellSearch {
 
   /// The cells within a sphere.
   void add(const Vec3& x, double radius_mm, std::vector<std::uint64_t>& keys) const {
-    const double pitch = part_.gear().pitch(), r = radius(x);
+    const tooth_space::ToothedPart& part = part_.part();
+    const double pitch = part.pitch(), s = part.chart().along(x);
     for (int zone = 0; zone < part_.zones(); ++zone) {
-      const auto& ring = part_.space(zone).ring().zone;
+      const auto& ring = part.space(zone).outline();
       const double reach = radius_mm + part_.patches(zone).search_margin();
-      const double end =
-          zone + 1 < part_.zones() ? part_.space(zone + 1).ring().zone.inner_radius_mm : ring.outer_radius_mm;
-      if (x.z() - reach > part_.gear().blank_top()) continue;
-      if (r + reach < ring.inner_radius_mm || r - reach > end) continue;
-      const double away = std::remainder(azimuth(x) - part_.space_azimuth(zone, std::max(r, 1.0)), kTwoPi);
+      double from = ring.s_from, to = ring.s_to;
+      if (const auto groove = part.groove(); groove && zone == 0) {  // its floor is told with the first zone
+        from = std::min(from, groove->from);
+        to = std::max(to, groove->to);
+      }
+      if (part.chart().up(x) - reach > part.blank_top()) continue;
+      if (s + reach < from || s - reach > to) continue;
+      const double away = std::remainder(azimuth(x) - part_.space_azimuth(zone, s), kTwoPi);
       const int index = int(std::lround(away / pitch)),
-                wide = 1 + int(std::ceil(reach / (pitch * ring.inner_radius_mm)));
+                wide = 1 + int(std::ceil(reach / (pitch * part_.least_radius(zone))));
       for (int tooth = index - wide; tooth <= index + wide; ++tooth)
         part_.cell_index(zone).near(turned(x, -tooth * pitch), reach, [&](std::size_t c, double within) {
           keys.push_back(std::uint64_t(zone) << 56 | std::uint64_t(tooth + kTeeth) << 32 | c);
@@ -276,13 +281,14 @@ class Sweep {
         course_(m),
         turns_(course_.turns()),
         turn_rate_(course_.turn_rate()),
+        roof_(part.part()),
         half_way_(course_.view(0.5)),
         turned_(0.5 * turn_rate_ + m.axis_deviation) {}
 
   /// @param near  none: found here
   SweptGap run(const NearCells* near) {
     SweptGap out{o_.enough_mm, o_.enough_mm, 0, "tooth", m_.tip_to};
-    const double above = least_height() - part_.gear().blank_top();
+    const double above = least_height();
     if (above >= o_.enough_mm) return out;
     std::vector<NearCell> own;
     if (!near) own = CellSearch(part_, std::span(&body_, 1), m_, o_.enough_mm).cells();
@@ -303,11 +309,9 @@ class Sweep {
   }
 
  private:
-  /// Lowest height of the body over the whole motion.
+  /// How far the body stays above the part over the whole motion.
   [[nodiscard]] double least_height() const {
-    const double ends =
-        std::min(tool::lowest_z(body_, m_.tip_from, m_.axis_from), tool::lowest_z(body_, m_.tip_to, m_.axis_to));
-    return ends - arm_ * ((m_.axis_to - m_.axis_from).norm() + m_.axis_deviation) - m_.deviation_mm;
+    return roof_.over(body_, m_.tip_from, m_.axis_from, m_.tip_to, m_.axis_to) - arm_ * ((m_.axis_to - m_.axis_from).norm() + m_.axis_deviation) - m_.deviation_mm;
   }
   [[nodiscard]] View view(double t) const { return course_.view(t); }
   [[nodiscard]] double slack(double arm, double dt) const { return course_.slack(arm, dt); }
@@ -569,6 +573,7 @@ class Sweep {
   Course course_;
   bool turns_;
   double turn_rate_;
+  Roof roof_;
   View half_way_;
   double turned_;  // from half way on
   std::vector<Target> targets_;

@@ -143,7 +143,7 @@ class BodyTree::Search {
 };
 
 BodyTree::BodyTree(const GearDistance& part)
-    : roof_(part.gear().blank_top()), sag_(part.cell_sag_mm()), pitch_(part.gear().pitch()) {
+    : roof_(part.part()), sag_(part.cell_sag_mm()), pitch_(part.part().pitch()) {
   for (int z = 0; z < part.zones(); ++z) {
     Zone zone;
     const auto& triangles = part.triangles(z);
@@ -162,7 +162,7 @@ BodyTree::BodyTree(const GearDistance& part)
     if (!zone.cells.empty()) build(zone, 0, std::uint32_t(zone.cells.size()));
     zones_.push_back(std::move(zone));
   }
-  const int teeth = part.gear().parameters().teeth;
+  const int teeth = part.part().teeth();
   for (int k = 0; k < teeth; ++k) {
     const double angle = -2 * std::numbers::pi * k / teeth;
     turns_.emplace_back(std::cos(angle), std::sin(angle));
@@ -199,10 +199,10 @@ std::uint32_t BodyTree::build(Zone& zone, std::uint32_t first, std::uint32_t cou
 
 double BodyTree::least(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double stop,
                        double resolution_mm) const {
-  const double above = tool::lowest_z(body, tip, axis) - roof_;
+  const double above = roof_.over(body, tip, axis);
   if (above >= enough) return enough;
   const double found = Search(*this, body, tip, axis, enough, stop, resolution_mm).run();
-  return std::max(found, above);  // the whole part lies below: that height is a proven gap too
+  return std::max(found, above);  // the whole part lies below: that is a proven gap too
 }
 
 double BodyTree::gap(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough,

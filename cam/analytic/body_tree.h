@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cam/analytic/gear_distance.h"
+#include "cam/analytic/roof.h"
 #include "cam/tool/body.h"
 
 namespace toothpath::analytic {
@@ -65,7 +66,8 @@ class BodyTree {
   [[nodiscard]] double least(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double stop,
                              double resolution_mm) const;
 
-  double roof_, sag_, pitch_;
+  Roof roof_;
+  double sag_, pitch_;
   std::vector<Zone> zones_;
   std::vector<std::pair<double, double>> turns_;  ///< cosine and sine of every tooth's index angle
 };

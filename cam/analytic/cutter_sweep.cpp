@@ -1,6 +1,7 @@
 #include "cam/analytic/cutter_sweep.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -43,6 +44,7 @@ double least_between(double d0, double d1, double length) {
 
 CutterSweep::CutterSweep(const GearDistance& part, const tool::ToolAssembly& tool, double proof_mm, double tolerance_mm)
     : part_(part),
+      roof_(part.part()),
       R_(tool.radius_mm()),
       top_(tool.flute_length_mm - R_),
       proof_(proof_mm),
@@ -135,10 +137,18 @@ bool CutterSweep::centre(double& least) {
 
 /// How far the whole cutting part stays above the part.
 double CutterSweep::height_above() const {
-  double low = INFINITY;
-  for (const double t : {0.0, 1.0})
-    for (const double h : {0.0, top_}) low = std::min(low, place(t, h).z());
-  return low - R_ - path::line_slack(*m_, R_ + std::max(top_, 0.0), 1) - part_.gear().blank_top();
+  const std::array<Vec3, 4> ends{place(0, 0), place(0, top_), place(1, 0), place(1, top_)};
+  return roof_.over(ends) - R_ - path::line_slack(*m_, R_ + std::max(top_, 0.0), 1);
+}
+
+/// How far the flute stays above the part from a height on; 0 or less where that is not known.
+double CutterSweep::height_from(double height, double next) const {
+  if (!roof_.flat()) {
+    const std::array<Vec3, 4> ends{place(0, height), place(0, top_), place(1, height), place(1, top_)};
+    return roof_.over(ends) - R_ - path::line_slack(*m_, R_ + top_, 1);
+  }
+  if (m_->axis_from.z() < 0 || m_->axis_to.z() < 0) return 0;
+  return std::min(place(0, height).z(), place(1, height).z()) - R_ - path::line_slack(*m_, R_ + next, 1) - roof_.top();
 }
 
 /// Follows the ball centre; returns its least distance, proven.
@@ -227,11 +237,8 @@ void CutterSweep::flute(double low, double ball_bound) {
   if (low <= -within_) return;  // a wreck, bounded already
   double h = 0;
   int looks = kLooksAbove;
-  const double roof = part_.gear().blank_top();
   for (Row& row : rows_) {
-    if (const double above =
-            std::min(place(0, h).z(), place(1, h).z()) - R_ - path::line_slack(*m_, R_ + row.height, 1) - roof;
-        m_->axis_from.z() >= 0 && m_->axis_to.z() >= 0 && above > 0) {
+    if (const double above = height_from(h, row.height); above > 0) {
       flute_leaves_ = above;
       return;  // above the part from here on
     }

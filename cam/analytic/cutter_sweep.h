@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "cam/analytic/gear_distance.h"
+#include "cam/analytic/roof.h"
 #include "cam/path/tool_motion.h"
 #include "cam/tool/assembly.h"
 #include "cam/tool/body.h"
@@ -81,6 +82,7 @@ class CutterSweep {
   void note(const NearestPlace& q, tool::Body body);
   [[nodiscard]] bool settled(double least, double seen, double slack, double arm) const;
   [[nodiscard]] double height_above() const;
+  [[nodiscard]] double height_from(double height, double next) const;
   bool centre(double& least);
   double ball(double t0, double t1, const NearestPlace& q0, const NearestPlace& q1, int depth);
   void flute(double least_at_centre, double ball_bound);
@@ -93,6 +95,7 @@ class CutterSweep {
   double at(double t, double height);
 
   const GearDistance& part_;
+  Roof roof_;
   double R_, top_, proof_, tolerance_, within_;
   std::vector<Row> rows_;
   std::vector<Known> known_;  ///< by the bits of the place

@@ -8,7 +8,7 @@ namespace toothpath::analytic {
 namespace {
 
 constexpr double kProfileSag = 5e-4;  // mm: of the straight upper borders against the profile
-constexpr int kStrips = 48;           // over a pitch, at least: the face is round
+constexpr int kStrips = 48;           // over a pitch, at least: a face may be round
 constexpr double kQuadHeight = 1.0;   // mm
 
 /// The part of a facet where n.p <= limit.
@@ -28,41 +28,46 @@ Facet cut(const Facet& facet, const Vec3& n, double limit) {
 
 }  // namespace
 
-bool on_ring(const face_gear::SpaceSheet& space, const Vec3& p, double slack) {
-  const double r = std::hypot(p.x(), p.y());
-  const auto& zone = space.ring().zone;
-  return r >= zone.inner_radius_mm - slack && r <= zone.outer_radius_mm + slack &&
-         p.z() <= space.surface().z_tip(r) + slack;
+bool on_ring(const tooth_space::ToothSpace& space, const Vec3& p, double slack) {
+  const auto& ring = space.outline();
+  const double s = ring.chart.along(p);
+  return s >= ring.s_from - slack && s <= ring.s_to + slack && ring.chart.up(p) <= space.tip(s) + slack;
 }
 
-Facet on_ring(const face_gear::SpaceSheet& space, const Facet& facet, double sag) {
-  const auto& f = space.surface();
-  const double r_in = space.ring().zone.inner_radius_mm, r_out = space.ring().zone.outer_radius_mm;
+Facet on_ring(const tooth_space::ToothSpace& space, const Facet& facet, double sag) {
+  const auto& ring = space.outline();
+  const tooth_space::Chart& chart = ring.chart;
   const auto corners = std::span(facet.corner).first(facet.count);
   if (std::all_of(corners.begin(), corners.end(), [&](const FacetCorner& c) { return on_ring(space, c.p); }))
     return facet;
   Vec3 centre = Vec3::Zero();
   for (const auto& c : corners) centre += c.p / double(facet.count);
   const Vec3 outwards = Vec3(centre.x(), centre.y(), 0).normalized();
-  double across = 0, low = INFINITY, high = 0;  // across: squared distance from the plane through the axis
+  double across = 0, low = INFINITY, high = -INFINITY;  // across: squared distance from the plane through the axis
+  double least_radius = INFINITY;                       // in that plane
   for (const auto& c : corners) {
-    const double side = c.p.cross(outwards).z(), r = std::clamp(std::hypot(c.p.x(), c.p.y()), r_in, r_out);
+    const double side = c.p.cross(outwards).z(), s = std::clamp(chart.along(c.p), ring.s_from, ring.s_to);
     across = std::max(across, side * side);
-    low = std::min(low, r);
-    high = std::max(high, r);
+    low = std::min(low, s);
+    high = std::max(high, s);
+    least_radius = std::min(least_radius, c.p.dot(outwards));
   }
-  // r lies above r.outwards by at most across / (2 r); a point within the sag of the polygon is a little farther out
-  // still.
-  const double round = 1.1 * across / (2 * r_in) + 1e-9;
+  if (chart.sine == 0) least_radius = ring.s_from;
+  // The radius of a place lies above its part along `outwards` by at most across / (2 r); a point within the sag of the
+  // polygon is a little farther out still.
+  const double round = 1.1 * across / (2 * least_radius) + 1e-9;
   // The tip surface over the facet lies below a plane that slopes as it does.
-  const double slope = high - low > 1e-9 ? (f.z_tip(high) - f.z_tip(low)) / (high - low) : 0;
-  const auto over = [&](double r) { return f.z_tip(r) - slope * r; };
+  const double slope = high - low > 1e-9 ? (space.tip(high) - space.tip(low)) / (high - low) : 0;
+  const auto over = [&](double s) { return space.tip(s) - slope * s; };
   const double middle = over(0.5 * (low + high));
   const double tip = std::max(over(low), over(high)) + 1.2 * std::abs(middle - over(low));
   const double steep = std::sqrt(1 + slope * slope);
-  Facet out = cut(facet, Vec3(Vec3::UnitZ() - slope * outwards), tip + std::abs(slope) * round + steep * sag);
-  out = cut(out, outwards, r_out + sag);
-  return cut(out, -outwards, -r_in + round + sag);
+  const Vec3 along = chart.cosine * outwards - chart.sine * Vec3::UnitZ(),
+             up = chart.sine * outwards + chart.cosine * Vec3::UnitZ();
+  const double round_s = chart.cosine * round;
+  Facet out = cut(facet, Vec3(up - slope * along), tip + std::abs(slope) * round_s + steep * sag);
+  out = cut(out, along, ring.s_to + sag);
+  return cut(out, -along, -ring.s_from + round_s + sag);
 }
 
 Vec2 border_place(const std::vector<Vec2>& border, double at) {
@@ -90,9 +95,9 @@ BorderStretch border_stretch(const std::vector<Vec2>& border, double from, doubl
 }
 
 std::vector<Vec2> end_border(const EndFace& face, const std::vector<Vec2>& profile) {
-  std::vector<Vec2> border{{face.from, face.z_tip_mm}};
+  std::vector<Vec2> border{{face.from, face.tip_mm}};
   if (profile.size() >= 2) border.insert(border.end(), profile.begin(), profile.end());
-  border.push_back({face.from + face.pitch, face.z_tip_mm});
+  border.push_back({face.from + face.pitch, face.tip_mm});
   return border;
 }
 
@@ -100,15 +105,18 @@ std::vector<EndQuad> end_face_quads(const EndFace& face, const std::vector<Vec2>
   std::vector<EndQuad> quads;
   const double widest = face.pitch / kStrips;
   const auto add = [&](const Vec2& a, const Vec2& b, double from, double to) {
-    // Flat quads in front of the round face: the outer one touches it in the middle, the inner one along its borders.
-    const double r = face.outer ? face.radius_mm / std::cos(0.5 * (b.x() - a.x())) : face.radius_mm;
-    const auto at = [r](double azimuth, double z) { return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), z); };
+    // Flat quads in front of a round face: the outer one touches it in the middle, the inner one along its borders.
+    const double round = face.outer ? 1 + face.chart.cosine * (std::cos(0.5 * (b.x() - a.x())) - 1) : 1;
+    const auto at = [&](double azimuth, double h) {
+      const double r = face.chart.r(face.s_mm, h) / round;
+      return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), face.chart.z(face.s_mm, h));
+    };
     const double high = std::max(a.y(), b.y());
     const int pieces = std::max(1, int(std::ceil((high - face.base_mm) / kQuadHeight)));
-    const auto z = [&](double top, int q) { return face.base_mm + (top - face.base_mm) * q / pieces; };
+    const auto level = [&](double top, int q) { return face.base_mm + (top - face.base_mm) * q / pieces; };
     for (int q = 0; q < pieces; ++q)
       quads.push_back(
-          {{at(a.x(), z(a.y(), q)), at(b.x(), z(b.y(), q)), at(a.x(), z(a.y(), q + 1)), at(b.x(), z(b.y(), q + 1))},
+          {{at(a.x(), level(a.y(), q)), at(b.x(), level(b.y(), q)), at(a.x(), level(a.y(), q + 1)), at(b.x(), level(b.y(), q + 1))},
            from,
            to,
            double(q) / pieces,
@@ -118,7 +126,7 @@ std::vector<EndQuad> end_face_quads(const EndFace& face, const std::vector<Vec2>
   const auto land = [&](double from, double to, double piece) {
     const int strips = std::max(1, int(std::ceil((to - from) / widest)));
     for (int k = 0; to > from && k < strips; ++k)
-      add({from + (to - from) * k / strips, face.z_tip_mm}, {from + (to - from) * (k + 1) / strips, face.z_tip_mm},
+      add({from + (to - from) * k / strips, face.tip_mm}, {from + (to - from) * (k + 1) / strips, face.tip_mm},
           piece + double(k) / strips, piece + double(k + 1) / strips);
   };
   if (profile.size() < 2) {
@@ -139,8 +147,8 @@ std::vector<EndQuad> end_face_quads(const EndFace& face, const std::vector<Vec2>
       }
     Vec2 from = profile[a], to = profile[b];
     if (from.x() > to.x()) std::swap(from, to);  // below an overhang as well
-    from.y() = std::min(from.y() + raise, face.z_tip_mm);
-    to.y() = std::min(to.y() + raise, face.z_tip_mm);
+    from.y() = std::min(from.y() + raise, face.tip_mm);
+    to.y() = std::min(to.y() + raise, face.tip_mm);
     add(from, to, double(a + 1), double(b + 1));
     a = b;
   }

@@ -7,14 +7,9 @@
 #include <cmath>
 #include <vector>
 
-#include "geometry/face_gear/space_sheet.h"
+#include "geometry/tooth_space/tooth_space.h"
 
 namespace toothpath::analytic {
-
-/// A place of the gear frame in cylinder coordinates.
-[[nodiscard]] inline Vec3 on_cylinder(double r, double azimuth, double z) {
-  return {r * std::cos(azimuth), r * std::sin(azimuth), z};
-}
 
 /// A corner of a flat polygon, with the parameters of its place on a patch. `stands`: it is a place of the ring's
 /// surface.
@@ -30,26 +25,27 @@ struct Facet {
   void add(const FacetCorner& c) { corner[count++] = c; }
 };
 
-/// Does a place lie between the two radii of the ring and not above its tip surface?
-[[nodiscard]] bool on_ring(const face_gear::SpaceSheet& space, const Vec3& p, double slack_mm = 0);
+/// Does a place lie between the two ends of the ring and not above its tip surface?
+[[nodiscard]] bool on_ring(const tooth_space::ToothSpace& space, const Vec3& p, double slack_mm = 0);
 
 /// The part of a triangle (gear frame, mm) that may stand for material of the ring: every point of the surface between
-/// the two radii and below the tip surface that lies within `sag_mm` of the triangle lies within `sag_mm` of what is
+/// the two ends and below the tip surface that lies within `sag_mm` of the triangle lies within `sag_mm` of what is
 /// returned. Nothing else is kept beyond the ends or above the tip, but for `sag_mm` and what a plane lacks of a
-/// cylinder over one facet.
-[[nodiscard]] Facet on_ring(const face_gear::SpaceSheet& space, const Facet& triangle, double sag_mm);
+/// round surface over one facet.
+[[nodiscard]] Facet on_ring(const tooth_space::ToothSpace& space, const Facet& triangle, double sag_mm);
 
 /// Which end of the ring.
 struct EndFace {
-  double radius_mm = 0;
+  tooth_space::Chart chart;
+  double s_mm = 0;
   bool outer = false;
-  double z_tip_mm = 0;         ///< height of the tip surface there
+  double tip_mm = 0;           ///< height of the tip surface there
   double from = 0, pitch = 0;  ///< the face is covered over the azimuths [from, from + pitch], rad
   double base_mm = 0;          ///< lower border
 };
 
 /// The upper border of an end face over one pitch: from the middle of a land, along the profile of the tooth space
-/// (azimuth, z), from tip to tip, to the middle of the next land.
+/// (azimuth, h), from tip to tip, to the middle of the next land.
 [[nodiscard]] std::vector<Vec2> end_border(const EndFace& face, const std::vector<Vec2>& profile);
 
 /// A flat quad of an end face. `from`, `to`: places on its border, by index and share; `low`, `high`: shares of the

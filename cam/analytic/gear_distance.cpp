@@ -8,23 +8,23 @@
 
 #include "cam/analytic/gear_ring.h"
 #include "geometry/base/angle.h"
-#include "geometry/face_gear/inverse.h"
 
 namespace toothpath::analytic {
 namespace {
 
 constexpr double kTreeError = 1e-7;  // mm: of distances to facets, with room to spare
+constexpr double kFlatTip = 0.577;   // mm/mm: of a tip surface that is no farther from what stands above it than 1 / 1.5
 constexpr double kShortLine = 0.5;   // a line that spans more than this share of its radius is not looked at
 
-/// Radii and heights that some places have.
+/// What s and h some places have.
 struct Extent {
-  double r_low, r_high, z_low, z_high;
+  double s_low, s_high, h_low, h_high;
 };
 
 double beyond(double low, double high, double x) { return std::max({low - x, x - high, 0.0}); }
 
 /// The line's least distance from the z axis.
-double least_radius(const Vec3& from, const Vec3& to) {
+double radius_of_line(const Vec3& from, const Vec3& to) {
   return distance_to_segment(Vec3::Zero(), {from.x(), from.y(), 0}, {to.x(), to.y(), 0});
 }
 
@@ -51,34 +51,38 @@ double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
 }
 
 struct GearDistance::Impl {
-  face_gear::FaceGear gear;
+  std::shared_ptr<const tooth_space::ToothedPart> part;
   std::vector<std::unique_ptr<GearRing>> rings;
+  tooth_space::Chart chart;
   double pitch = 0;
   double sag = 0;
-  double groove_floor = 0;  ///< where there are two rings
+  std::optional<tooth_space::ToothedPart::Stretch> groove;
+  double groove_floor = 0;  ///< where there is a groove
   std::optional<Refusal> refusal;
   int half_turn = 0;        ///< teeth
   std::vector<Turn> turns;  ///< of every tooth back to space 0, from -half_turn on
 
-  explicit Impl(const face_gear::FaceGear& g) : gear(g), pitch(g.pitch()), half_turn(g.parameters().teeth / 2 + 1) {
+  explicit Impl(std::shared_ptr<const tooth_space::ToothedPart> p)
+      : part(std::move(p)), chart(part->chart()), pitch(part->pitch()), half_turn(part->teeth() / 2 + 1) {
     for (int k = -half_turn; k <= half_turn; ++k) turns.emplace_back(-double(k) * pitch);
   }
   [[nodiscard]] Vec3 to_space_0(const Vec3& p, double tooth) const {
     return turns[std::size_t(int(tooth) + half_turn)](p);
   }
-  /// How many teeth a place at radius r lies from space 0: whole numbers are the middles of the openings.
-  [[nodiscard]] double spaces_from_0(const GearRing& ring, double r, double azimuth) const {
-    return std::remainder(azimuth - ring.lookup(ring.opening, r), kTwoPi) / pitch;
+  /// How many teeth a place at s lies from space 0: whole numbers are the middles of the openings.
+  [[nodiscard]] double spaces_from_0(const GearRing& ring, double s, double azimuth) const {
+    return std::remainder(azimuth - ring.lookup(ring.opening, s), kTwoPi) / pitch;
   }
   template <typename Facets>
   [[nodiscard]] double keeps(const Extent& places, double within, const Facets& facets) const;
   class Question;
 };
 
-GearDistance::GearDistance(const face_gear::FaceGear& gear, double reach_mm) : impl_(std::make_unique<Impl>(gear)) {
-  std::vector<std::optional<Expected<std::unique_ptr<GearRing>, Refusal>>> made(gear.rings().size());
+GearDistance::GearDistance(std::shared_ptr<const tooth_space::ToothedPart> part, double reach_mm)
+    : impl_(std::make_unique<Impl>(std::move(part))) {
+  std::vector<std::optional<Expected<std::unique_ptr<GearRing>, Refusal>>> made(std::size_t(impl_->part->zones()));
   tbb::parallel_for(std::size_t(0), made.size(),
-                    [&](std::size_t zone) { made[zone] = GearRing::make(gear, int(zone), reach_mm); });
+                    [&](std::size_t zone) { made[zone] = GearRing::make(*impl_->part, int(zone), reach_mm); });
   for (auto& ring : made) {
     if (auto* refusal = (*ring).refused()) {
       impl_->refusal = std::move(*refusal);
@@ -88,7 +92,8 @@ GearDistance::GearDistance(const face_gear::FaceGear& gear, double reach_mm) : i
     impl_->rings.push_back(std::move((*ring).value()));
     impl_->sag = std::max(impl_->sag, impl_->rings.back()->sag);
   }
-  if (impl_->rings.size() > 1) impl_->groove_floor = gear.groove_floor();
+  impl_->groove = impl_->part->groove();
+  impl_->groove_floor = impl_->part->groove_floor().value_or(0);
 }
 
 GearDistance::~GearDistance() = default;
@@ -102,7 +107,6 @@ const std::vector<std::array<Vec3, 3>>& GearDistance::triangles(int zone) const 
 }
 const std::optional<Refusal>& GearDistance::refusal() const { return impl_->refusal; }
 const SpatialIndex& GearDistance::cell_index(int zone) const { return *impl_->rings[std::size_t(zone)]->index; }
-const face_gear::SpaceSheet& GearDistance::space(int zone) const { return impl_->rings[std::size_t(zone)]->space; }
 const BodyPatches& GearDistance::patches(int zone) const { return *impl_->rings[std::size_t(zone)]->patches; }
 std::size_t GearDistance::unproven() const {
   std::size_t sum = 0;
@@ -110,18 +114,19 @@ std::size_t GearDistance::unproven() const {
   return sum;
 }
 double GearDistance::cell_sag_mm() const { return impl_->sag; }
-const face_gear::FaceGear& GearDistance::gear() const { return impl_->gear; }
+const tooth_space::ToothedPart& GearDistance::part() const { return *impl_->part; }
 int GearDistance::zones() const { return int(impl_->rings.size()); }
-double GearDistance::space_azimuth(int zone, double r) const {
+double GearDistance::space_azimuth(int zone, double s) const {
   const auto& ring = *impl_->rings[std::size_t(zone)];
-  return ring.lookup(ring.mid, r);
+  return ring.lookup(ring.mid, s);
 }
+double GearDistance::least_radius(int zone) const { return impl_->rings[std::size_t(zone)]->least_radius; }
 
 /// One point asked: every ring in turn offers what lies nearest of its sheet, its edges, its ends and lands.
 class GearDistance::Impl::Question {
  public:
   Question(const Impl& part, const Vec3& asked, double within)
-      : part_(part), asked_(asked), within_(within), r_(radius(asked)), z_(asked.z()) {
+      : part_(part), asked_(asked), within_(within), s_(part.chart.along(asked)), h_(part.chart.up(asked)) {
     best_.distance = within;
     best_.point = asked;
   }
@@ -143,11 +148,11 @@ class GearDistance::Impl::Question {
     const GearRing& ring;
     int zone;
     Vec3 c;  ///< turned to space 0
-    double azimuth, z_tip, gap_r;
-    [[nodiscard]] bool beside() const { return gap_r > 0; }
+    double azimuth, h, tip, gap_s;
+    [[nodiscard]] bool beside() const { return gap_s > 0; }
     [[nodiscard]] bool in_air() const {
-      return beside() || c.z() >= z_tip;
-    }  ///< certainly: neither between the radii of the ring and below its tip
+      return beside() || h >= tip;
+    }  ///< certainly: not between the ends of the ring and below its tip
   };
   /// The nearest quad of every band of every piece, apart for whole quads and for those that reach beyond the ring: the
   /// nearest point of such a one may not exist, and must not hide a farther one that does.
@@ -167,15 +172,15 @@ class GearDistance::Impl::Question {
 
   void ask(std::size_t zone) {
     const auto& ring = *part_.rings[zone];
-    const double gap_r = std::max({ring.r_in - r_, r_ - ring.r_out, 0.0});
-    if (gap_r >= best_.distance) return;
-    const double z_tip = ring.space.surface().z_tip(std::clamp(r_, ring.r_in, ring.r_out));
-    if (z_ - z_tip >= best_.distance * 1.5 && std::abs(ring.space.surface().Cg) < 0.5) return;
+    const double gap_s = std::max({ring.s_from - s_, s_ - ring.s_to, 0.0});
+    if (gap_s >= best_.distance) return;
+    const double tip = ring.space.tip(std::clamp(s_, ring.s_from, ring.s_to));
+    if (h_ - tip >= best_.distance * 1.5 && ring.tip_slope < kFlatTip) return;
     // The space whose opening lies next: its root may stand off the middle of its opening by a good part of a pitch.
-    const double middle = ring.lookup(ring.opening, r_);
-    const double away = std::remainder(std::atan2(asked_.y(), asked_.x()) - middle, kTwoPi);
+    const double middle = ring.lookup(ring.opening, s_);
+    const double away = std::remainder(toothpath::azimuth(asked_) - middle, kTwoPi);
     const double index = std::round(away / part_.pitch);
-    const View at{ring, int(zone), part_.to_space_0(asked_, index), middle + away - index * part_.pitch, z_tip, gap_r};
+    const View at{ring, int(zone), part_.to_space_0(asked_, index), middle + away - index * part_.pitch, h_, tip, gap_s};
     const Seeds seeds = seeds_of(at);
     const bool found = sheet(at, seeds);
     edges(at);
@@ -243,40 +248,38 @@ class GearDistance::Impl::Question {
   }
 
   void end_faces(const View& at) {
-    if (!at.beside() || at.gap_r >= best_.distance) return;  // no nearer than what was found
-    const auto& profile = r_ < at.ring.r_in ? at.ring.end_in : at.ring.end_out;
-    if (profile.size() > 2 && in_material(profile, at.azimuth, z_, at.z_tip))
-      take(at.gap_r, true, at.zone, "end", at.c, at.c);
+    if (!at.beside() || at.gap_s >= best_.distance) return;  // no nearer than what was found
+    const auto& profile = s_ < at.ring.s_from ? at.ring.end_from : at.ring.end_to;
+    if (profile.size() > 2 && in_material(profile, at.azimuth, h_, at.tip))
+      take(at.gap_s, true, at.zone, "end", at.c, at.c);
   }
 
   void land_or_inside(const View& at, bool found) {
     const auto& ring = at.ring;
-    if (z_ >= at.z_tip) {
+    if (h_ >= at.tip) {
       double foot = 0;
-      const double d = ring.to_tip_meridian(r_, z_, foot);
-      if (ring.over_land(at.azimuth, foot))
+      const double d = ring.to_tip_meridian(s_, h_, foot);
+      if (ring.over_land(at.azimuth, foot)) {
+        const double tip = ring.space.tip(foot), r = ring.chart.r(foot, tip), from_axis = radius(asked_);
         take(d, ring.tip_sag == 0, at.zone, "tip",
-             Vec3(at.c.x() * foot / r_, at.c.y() * foot / r_, ring.space.surface().z_tip(foot)), at.c);
+             Vec3(at.c.x() * r / from_axis, at.c.y() * r / from_axis, ring.chart.z(foot, tip)), at.c);
+      }
     } else if (!at.beside() && !found) {
       // No surface near: either free in a wide space or deep inside the material.
-      if (ring.over_land(at.azimuth, r_) || ring.in_material_at(r_, at.azimuth, z_, at.z_tip))
+      if (ring.over_land(at.azimuth, s_) || ring.in_material_at(s_, at.azimuth, h_, at.tip))
         take(-within_, false, at.zone, "inside", at.c, at.c);
     }
   }
 
   void grooves() {
-    const auto& rings = part_.rings;
-    if (rings.size() < 2) return;
-    const double floor_z = part_.groove_floor;
-    for (std::size_t zone = 0; zone + 1 < rings.size(); ++zone) {
-      const double gap = std::max({rings[zone]->r_out - r_, r_ - rings[zone + 1]->r_in, 0.0});
-      if (gap == 0) take(z_ - floor_z, true, int(zone), "groove", Vec3(asked_.x(), asked_.y(), floor_z), asked_);
-    }
+    if (!part_.groove || std::max(part_.groove->from - s_, s_ - part_.groove->to) > 0) return;
+    const double above = h_ - part_.groove_floor;
+    take(above, true, 0, "groove", asked_ - above * part_.chart.up_at(toothpath::azimuth(asked_)), asked_);
   }
 
   const Impl& part_;
   const Vec3& asked_;
-  double within_, r_, z_;
+  double within_, s_, h_;
   NearestPlace best_;
 };
 
@@ -285,28 +288,26 @@ template <typename Facets>
 double GearDistance::Impl::keeps(const Extent& places, double within, const Facets& facets) const {
   if (refusal) return 0;
   double least = within;
-  for (std::size_t zone = 0; zone < rings.size(); ++zone) {
-    const auto& ring = *rings[zone];
-    if (std::max(ring.r_in - places.r_high, places.r_low - ring.r_out) < least) {
-      least = facets(ring, least);
-      // The facets of the ends stop below the roots, the ring goes on.
-      least = std::min(least, std::hypot(std::max(places.z_low - ring.base_mm, 0.0),
-                                         std::min(beyond(places.r_low, places.r_high, ring.r_in),
-                                                  beyond(places.r_low, places.r_high, ring.r_out))));
-    }
-    // The floor of the groove up to the next ring.
-    if (zone + 1 < rings.size()) {
-      const double beside = std::max({ring.r_out - places.r_high, places.r_low - rings[zone + 1]->r_in, 0.0});
-      least = std::min(least, std::hypot(beside, beyond(places.z_low, places.z_high, groove_floor)));
-    }
+  for (const auto& made : rings) {
+    const auto& ring = *made;
+    if (std::max(ring.s_from - places.s_high, places.s_low - ring.s_to) >= least) continue;
+    least = facets(ring, least);
+    // The facets of the ends stop below the roots, the ring goes on.
+    least = std::min(least, std::hypot(std::max(places.h_low - ring.base_mm, 0.0),
+                                       std::min(beyond(places.s_low, places.s_high, ring.s_from),
+                                                beyond(places.s_low, places.s_high, ring.s_to))));
+  }
+  if (groove) {
+    const double beside = std::max({groove->from - places.s_high, places.s_low - groove->to, 0.0});
+    least = std::min(least, std::hypot(beside, beyond(places.h_low, places.h_high, groove_floor)));
   }
   return std::max(least, 0.0);
 }
 
 double GearDistance::surface_keeps(const Vec3& p, double within) const {
-  const double r = radius(p), at = toothpath::azimuth(p);
-  return impl_->keeps({r, r, p.z(), p.z()}, within, [&](const GearRing& ring, double least) {
-    const Vec3 c = impl_->to_space_0(p, std::round(impl_->spaces_from_0(ring, r, at)));
+  const double s = impl_->chart.along(p), h = impl_->chart.up(p), at = toothpath::azimuth(p);
+  return impl_->keeps({s, s, h, h}, within, [&](const GearRing& ring, double least) {
+    const Vec3 c = impl_->to_space_0(p, std::round(impl_->spaces_from_0(ring, s, at)));
     const double lost = ring.facet_sag + kTreeError;
     for (const auto* facets : {&ring.whole_facets, &ring.border_facets, &ring.other_facets})
       least = std::min(least, facets->least(c, least + lost) - lost);
@@ -318,17 +319,21 @@ double GearDistance::surface_keeps(const Vec3& from, const Vec3& axis, double le
   const Vec3 to = from + length * axis, middle = 0.5 * (from + to);
   const double half = 0.5 * std::hypot(to.x() - from.x(), to.y() - from.y()), r = radius(middle),
                at = toothpath::azimuth(middle);
-  const auto z = std::minmax(from.z(), to.z());
-  const Extent places{least_radius(from, to), std::max(radius(from), radius(to)), z.first, z.second};
+  const tooth_space::Chart& chart = impl_->chart;
+  const auto z = std::minmax({from.z(), to.z()});
+  const double r_low = radius_of_line(from, to), r_high = std::max(radius(from), radius(to)),
+               s = chart.along(middle), way = 0.5 * std::abs(chart.sine * (to.z() - from.z())) + chart.cosine * half;
+  const Extent places{chart.cosine * r_low - chart.sine * z.second, chart.cosine * r_high - chart.sine * z.first,
+                      chart.sine * r_low + chart.cosine * z.first, chart.sine * r_high + chart.cosine * z.second};
   return impl_->keeps(places, within, [&](const GearRing& ring, double least) {
     // The spaces in which places of the line stand: each sees the facets of its own.
     const double sine = half / r;
     if (!(sine < kShortLine)) return 0.0;
-    const double turn = sine / std::sqrt(1 - sine * sine) + ring.opening_slope * half,
-                 about = 0.5 + 1e-9 + turn / impl_->pitch, middle_space = impl_->spaces_from_0(ring, r, at);
+    const double turn = sine / std::sqrt(1 - sine * sine) + ring.opening_slope * way,
+                 about = 0.5 + 1e-9 + turn / impl_->pitch, middle_space = impl_->spaces_from_0(ring, s, at);
     const double lost = ring.facet_sag + kTreeError;
     for (double k = std::ceil(middle_space - about); k <= middle_space + about; ++k) {
-      const double space = std::remainder(k, double(impl_->gear.parameters().teeth));
+      const double space = std::remainder(k, double(impl_->part->teeth()));
       const Vec3 c = impl_->to_space_0(from, space), along = impl_->to_space_0(axis, space);
       for (const auto* facets : {&ring.whole_facets, &ring.border_facets, &ring.other_facets})
         least = std::min(least, facets->least_along(c, along, length, least + lost) - lost);

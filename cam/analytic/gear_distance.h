@@ -1,6 +1,6 @@
-// Exact distance from a point to the finished face gear: the question that every gouge check asks.
+// Exact distance from a point to the finished part: the question that every gouge check asks.
 //
-// The solid is the rings of teeth (each between its two radii, below its tip surface), the groove floor between two
+// The solid is the rings of teeth (each between its two ends, below its tip surface), the groove floor between two
 // rings and the body below. Facets over the working sheet of one tooth space, with proven sags, find candidates; Newton
 // on the analytic patches decides; both in double. Edges (ends of the ring, tip edges) are polylines whose proven sag
 // is subtracted. How the cells are made: cam/analytic/gear_ring.h. All spaces are turned copies: a point is first
@@ -16,7 +16,8 @@
 
 #include "cam/analytic/spatial_index.h"
 #include "geometry/base/refusal.h"
-#include "geometry/face_gear/space_sheet.h"
+#include "geometry/base/result.h"
+#include "geometry/tooth_space/toothed_part.h"
 
 namespace toothpath::analytic {
 
@@ -38,7 +39,7 @@ class GearDistance {
   /// `reach_mm`: largest distance that will ever be asked for (`within`).
   /// Where the surfaces of a ring cannot be followed over its whole width there is a `refusal()`; such a part has no
   /// zones, and `nearest` calls every point inside.
-  GearDistance(const face_gear::FaceGear& gear, double reach_mm);
+  GearDistance(std::shared_ptr<const tooth_space::ToothedPart> part, double reach_mm);
   ~GearDistance();
   GearDistance(GearDistance&&) noexcept;
 
@@ -75,7 +76,7 @@ class GearDistance {
   /// The cells cut off at the tip surface and the ends of the ring, widened there by no more than the sag.
   [[nodiscard]] const std::vector<std::array<Vec3, 3>>& triangles(int zone) const;
   [[nodiscard]] const SpatialIndex& cell_index(int zone) const;
-  [[nodiscard]] const face_gear::SpaceSheet& space(int zone) const;
+  [[nodiscard]] const tooth_space::ToothSpace& space(int zone) const { return part().space(zone); }
   /// The same cells on the exact surface, with proven sags: what shank and holder are proven against.
   [[nodiscard]] const BodyPatches& patches(int zone) const;
   /// Bounds of sags that are measured and not proven: none on nominal gears. docs/proof.md, What a clean result means.
@@ -85,10 +86,12 @@ class GearDistance {
   /// doubled, mm: for searches of tool directions and for the start places of Newton. What is proven rests on
   /// `patches`.
   [[nodiscard]] double cell_sag_mm() const;
-  [[nodiscard]] const face_gear::FaceGear& gear() const;
+  [[nodiscard]] const tooth_space::ToothedPart& part() const;
   [[nodiscard]] int zones() const;
-  /// Azimuth of the middle of tooth space 0 at radius r of a zone.
-  [[nodiscard]] double space_azimuth(int zone, double r) const;
+  /// Azimuth of the middle of tooth space 0 at s of a zone.
+  [[nodiscard]] double space_azimuth(int zone, double s) const;
+  /// Of all cells of a zone, from the gear axis.
+  [[nodiscard]] double least_radius(int zone) const;
 
  private:
   struct Impl;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kCellLength = 0.45;  // mm along the tooth
 constexpr int kEndPoints = 3000;      // on the profile at an end of the ring
 constexpr int kBands = GearDistance::kBands;
-constexpr int kTable = 257;           // places over the radius
+constexpr int kTable = 257;           // places along the teeth
 constexpr std::size_t kLandStep = 4;  // of them, along a cell of a land
 constexpr int kLandParts = 4;         // cells across a land
 constexpr int kFloorStrips = 48;      // of the groove floor over a pitch
@@ -31,22 +31,26 @@ double distance_between(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
   return (w + s * u - t * v).norm();
 }
 
+/// The same angle, the whole turns from it that lie next to `about`.
+double next_to(double about, double angle) { return angle + kTwoPi * std::round((about - angle) / kTwoPi); }
+
 /// Makes one ring, step by step.
 class Maker {
  public:
-  Maker(const face_gear::FaceGear& gear, int zone, const face_gear::SpaceSheet& space, GearRing& ring, double reach_mm)
-      : gear_(gear), zone_(zone), space_(space), R(ring), reach_(reach_mm) {}
+  Maker(const tooth_space::ToothedPart& part, int zone, GearRing& ring, double reach_mm)
+      : part_(part), zone_(zone), space_(ring.space), chart_(ring.chart), R(ring), reach_(reach_mm) {}
 
   void make() {
-    R.base_mm = std::min(gear_.lowest_root(), grooved() ? gear_.groove_floor() : INFINITY) - 0.5;
-    sheet_cells();
-    end_line(R.r_in, R.end_in, places_[0]);
-    end_line(R.r_out, R.end_out, places_[1]);
+    R.base_mm = std::min(part_.lowest_root(), part_.groove_floor().value_or(INFINITY)) - 0.5;
     tables();
+    R.least_radius = chart_.r(R.s_from, R.base_mm);
+    sheet_cells();
+    end_line(R.s_from, R.end_from, places_[0]);
+    end_line(R.s_to, R.end_to, places_[1]);
     end_edges();
     for (std::size_t n = 0; n < 2; ++n) {
-      tip_bend_[n] = tip_bends(space_, n == 0 ? 1 : -1, tip_[n], R.table_r);
-      add_edge(n == 0 ? plus_line_ : minus_line_, tip_edge_sags(space_, tip_bend_[n], R.table_r), "tip edge");
+      tip_bend_[n] = tip_bends(space_, n == 0 ? 1 : -1, tip_[n], R.table_s);
+      add_edge(n == 0 ? plus_line_ : minus_line_, tip_edge_sags(space_, tip_bend_[n], R.table_s), "tip edge");
     }
     land_cells();
     end_cells();
@@ -69,9 +73,10 @@ class Maker {
         cell.corner = {n00.at.contact.p, n01.at.contact.p, n10.at.contact.p, n11.at.contact.p};
         // The sheet goes on beyond the ends and the tip; what lies wholly there is no part of the gear.
         const auto all = [&](auto&& test) { return std::all_of(cell.corner.begin(), cell.corner.end(), test); };
-        const auto above_tip = [&](const Vec3& p) { return p.z() > space_.surface().z_tip(radius(p)) + kCellLength; };
-        if (all([&](const Vec3& p) { return radius(p) < R.r_in; }) ||
-            all([&](const Vec3& p) { return radius(p) > R.r_out; }) || all(above_tip))
+        const auto s = [&](const Vec3& p) { return chart_.along(p); };
+        const auto above_tip = [&](const Vec3& p) { return chart_.up(p) > space_.tip(s(p)) + kCellLength; };
+        if (all([&](const Vec3& p) { return s(p) < R.s_from; }) || all([&](const Vec3& p) { return s(p) > R.s_to; }) ||
+            all(above_tip))
           continue;
         cell.zone = zone_;
         cell.piece = n00.at.piece;
@@ -90,8 +95,8 @@ class Maker {
     }
     for (const auto& station : st) {
       std::vector<Vec2> profile;
-      for (const auto& node : station.nodes)
-        profile.push_back({std::atan2(node.at.contact.p.y(), node.at.contact.p.x()), node.at.contact.p.z()});
+      const double middle = R.lookup(R.mid, station.r);
+      for (const auto& node : station.nodes) profile.push_back(across(node.at.contact.p, middle));
       R.profiles.push_back(std::move(profile));
     }
     for (std::size_t j = 0; j + 1 < R.profiles.size(); ++j) {
@@ -104,6 +109,11 @@ class Maker {
     }
     R.sag *= 2;  // the middle of a cell shows about the largest sag
     for (auto& cell : R.cells) cell.radius += R.sag;
+  }
+
+  /// A place at a station, as azimuth and height.
+  [[nodiscard]] Vec2 across(const Vec3& p, double middle) const {
+    return {next_to(middle, azimuth(p)), chart_.up(p)};
   }
 
   void add_cell(GearRing::Cell& cell) {
@@ -142,56 +152,81 @@ class Maker {
   }
 
   /// The sheet at an end of the ring, from tip to tip.
-  void end_line(double r, std::vector<Vec2>& profile, std::vector<EndPlace>& places) {
-    const double z_tip = space_.surface().z_tip(r);
+  void end_line(double s, std::vector<Vec2>& profile, std::vector<EndPlace>& places) {
+    const double tip = space_.tip(s), middle = R.lookup(R.mid, s);
     for (int k = 0; k <= kEndPoints; ++k) {
-      const auto q = R.sheet.raw(5.0 * k / kEndPoints, r);
-      if (!q || q->contact.p.z() > z_tip) continue;
+      const auto q = R.sheet.raw(5.0 * k / kEndPoints, s);
+      if (!q || chart_.up(q->contact.p) > tip) continue;
       places.push_back({q->piece, q->u, q->v, q->contact.p});
-      profile.push_back({std::atan2(q->contact.p.y(), q->contact.p.x()), q->contact.p.z()});
+      profile.push_back(across(q->contact.p, middle));
     }
     // The corners where the flanks leave through the tip surface.
     for (const int side : {1, -1}) {
-      const auto c = space_.tip_edge(side, r);
+      const auto c = space_.tip_edge(side, s);
       if (!c) continue;
       const auto piece = tooth_space::flank_of(side);
       const auto q = space_.point(piece, c->u, c->v);
       if (!q) continue;
-      const Vec2 corner(std::atan2(q->p.y(), q->p.x()), z_tip);
+      const Vec2 corner(next_to(middle, azimuth(q->p)), tip);
       const EndPlace place{piece, c->u, c->v, q->p};
       places.insert(side > 0 ? places.begin() : places.end(), place);
       profile.insert(side > 0 ? profile.begin() : profile.end(), corner);
     }
   }
 
+  /// The middle of the root at s.
+  [[nodiscard]] Vec3 root_middle(double s) const {
+    constexpr int kRootSteps = 20;
+    double v = 0;
+    for (int attempt = 0; attempt < tooth_space::ToothSpace::kStarts; ++attempt)
+      if (const auto start = space_.start_v(tooth_space::Piece::root, 0.5, s, 0, {}, attempt)) {
+        v = *start;
+        break;
+      }
+    auto q = space_.at(tooth_space::Piece::root, 0.5, v);
+    for (int k = 0; q && k < kRootSteps && std::abs(chart_.along(q->p) - s) > 1e-9; ++k) {
+      v += (s - chart_.along(q->p)) / chart_.along(q->p, q->pv);
+      q = space_.at(tooth_space::Piece::root, 0.5, v);
+    }
+    return q ? q->p : Vec3(Vec3::Constant(NAN));
+  }
+
   void tables() {
+    const double pitch = part_.pitch();
     std::optional<tooth_space::EdgePlace> last_plus, last_minus;
     for (int k = 0; k < kTable; ++k) {
-      const double r = R.r_in + (R.r_out - R.r_in) * k / (kTable - 1);
-      const double z_tip = space_.surface().z_tip(r), pitch = gear_.pitch();
-      last_plus = space_.tip_edge(1, r, last_plus);
-      last_minus = space_.tip_edge(-1, r, last_minus);
-      const auto root = space_.point(tooth_space::Piece::root, 0.5,
-                                     std::sqrt(r * r - space_.surface().E * space_.surface().E) / space_.surface().Sg);
-      R.table_r.push_back(r);
-      R.mid.push_back(std::atan2(root->p.y(), root->p.x()));
+      const double s = R.s_from + (R.s_to - R.s_from) * k / (kTable - 1);
+      const double tip = space_.tip(s), root = azimuth(root_middle(s));
+      R.table_s.push_back(s);
+      R.mid.push_back(k > 0 ? next_to(R.mid.back(), root) : root);
+      last_plus = edge_at(1, s, last_plus, R.mid.back());
+      last_minus = edge_at(-1, s, last_minus, R.mid.back());
       R.tip_plus.push_back(last_plus ? last_plus->azimuth : R.mid.back() - pitch / 2);
       R.tip_minus.push_back(last_minus ? last_minus->azimuth + pitch : R.mid.back() + pitch / 2);
-      plus_line_.push_back({r * std::cos(R.tip_plus.back()), r * std::sin(R.tip_plus.back()), z_tip});
-      minus_line_.push_back({r * std::cos(R.tip_minus.back()), r * std::sin(R.tip_minus.back()), z_tip});
+      plus_line_.push_back(chart_.place(s, R.tip_plus.back(), tip));
+      minus_line_.push_back(chart_.place(s, R.tip_minus.back(), tip));
       tip_[0].push_back(last_plus);
       tip_[1].push_back(last_minus);
     }
     for (std::size_t k = 0; k < R.tip_plus.size(); ++k) R.opening.push_back(0.5 * (R.tip_plus[k] + R.tip_minus[k]));
     for (std::size_t k = 0; k + 1 < R.opening.size(); ++k)
       R.opening_slope = std::max(
-          R.opening_slope, 1.000001 * std::abs(R.opening[k + 1] - R.opening[k]) / (R.table_r[k + 1] - R.table_r[k]));
-    R.z_tip_in = space_.surface().z_tip(R.r_in);
-    R.z_tip_out = space_.surface().z_tip(R.r_out);
+          R.opening_slope, 1.000001 * std::abs(R.opening[k + 1] - R.opening[k]) / (R.table_s[k + 1] - R.table_s[k]));
+    R.tip_from = space_.tip(R.s_from);
+    R.tip_to = space_.tip(R.s_to);
+    R.tip_slope = space_.tip_bend(R.s_from, R.s_to).slope.magnitude();
     for (int k = 1; k < 64; ++k) {
-      const double t = k / 64.0, z = space_.surface().z_tip(R.r_in + t * (R.r_out - R.r_in));
-      R.tip_sag = std::max(R.tip_sag, 1.01 * std::abs(z - R.z_tip_in - t * (R.z_tip_out - R.z_tip_in)) - 1e-12);
+      const double t = k / 64.0, h = space_.tip(R.s_from + t * (R.s_to - R.s_from));
+      R.tip_sag = std::max(R.tip_sag, 1.01 * std::abs(h - R.tip_from - t * (R.tip_to - R.tip_from)) - 1e-12);
     }
+  }
+  /// A tip edge at s, behind `last`; its azimuth within half a turn of the root's.
+  [[nodiscard]] std::optional<tooth_space::EdgePlace> edge_at(int side, double s,
+                                                              const std::optional<tooth_space::EdgePlace>& last,
+                                                              double root) const {
+    auto place = space_.tip_edge(side, s, last);
+    if (place && !last) place->azimuth = next_to(root, place->azimuth);
+    return place;
   }
 
   void end_edges() {
@@ -201,6 +236,14 @@ class Maker {
       const std::size_t first = R.edges.size();
       add_edge(line, end_edge_sags(space_, places_[n]), "end edge");
       for (std::size_t k = first; k < R.edges.size(); ++k) border_sag_[n] = std::max(border_sag_[n], R.edges[k].sag);
+      if (chart_.sine == 0) continue;
+      // What is straight in azimuth and height is bent where the end is no cylinder.
+      double bent = 0;
+      for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+        const double turn = std::abs(angle_from_to(line[k], line[k + 1])), a = radius(line[k]), b = radius(line[k + 1]);
+        bent = std::max(bent, turn * (0.125 * std::max(a, b) * turn + 0.25 * std::abs(b - a)));
+      }
+      border_sag_[n] += bent;
     }
   }
 
@@ -213,14 +256,14 @@ class Maker {
         cell.zone = zone_;
         for (int corner = 0; corner < 4; ++corner) {
           const std::size_t at = k + (corner / 2 ? kLandStep : 0);
-          const Vec3 &a = plus_line_[at], b = turned(minus_line_[at], -gear_.pitch());
+          const Vec3 &a = plus_line_[at], b = turned(minus_line_[at], -part_.pitch());
           cell.corner[std::size_t(corner)] = b + (a - b) * ((part + corner % 2) / double(kLandParts));
         }
         cell.centre = 0.25 * (cell.corner[0] + cell.corner[1] + cell.corner[2] + cell.corner[3]);
         others_.push_back({R.cells.size(),
                            {tooth_space::Piece::tip},
-                           Vec2(part / double(kLandParts), R.table_r[k]),
-                           Vec2((part + 1) / double(kLandParts), R.table_r[k + kLandStep])});
+                           Vec2(part / double(kLandParts), R.table_s[k]),
+                           Vec2((part + 1) / double(kLandParts), R.table_s[k + kLandStep])});
         add_cell(cell);
       }
     }
@@ -236,32 +279,32 @@ class Maker {
     add_cell(cell);
   }
 
-  [[nodiscard]] bool grooved() const { return gear_.rings().size() > 1; }
   [[nodiscard]] EndFace end_face(bool outer) const {
-    const double r = outer ? R.r_out : R.r_in;
-    return {r, outer, space_.surface().z_tip(r), R.lookup(R.opening, r) - gear_.pitch() / 2, gear_.pitch(), R.base_mm};
+    const double s = outer ? R.s_to : R.s_from;
+    return {chart_,      s, outer, space_.tip(s), R.lookup(R.opening, s) - part_.pitch() / 2, part_.pitch(),
+            R.base_mm};
   }
 
   /// A strip of an end face ends at the lower of its two edges: the sheet itself stands for the rest.
   void end_cells() {
     for (const bool outer : {false, true})
-      for (const auto& quad : end_face_quads(end_face(outer), outer ? R.end_out : R.end_in))
+      for (const auto& quad : end_face_quads(end_face(outer), outer ? R.end_to : R.end_from))
         add_flat(quad.corner, {tooth_space::Piece::end, outer}, {quad.from, quad.low}, {quad.to, quad.high});
   }
 
   void floor_cells() {
-    if (!grooved() || zone_ != 0) return;
-    const auto at = [&](double r, double azimuth) {
-      return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), gear_.groove_floor());
-    };
-    const double next = gear_.rings()[1].zone.inner_radius_mm, pitch = gear_.pitch(),
-                 from = R.lookup(R.mid, R.r_out) - pitch / 2;
-    const int rows = std::max(1, int(std::ceil((next - R.r_out) / 1.0)));
+    const auto groove = part_.groove();
+    if (!groove || zone_ != 0) return;
+    const double floor = *part_.groove_floor(), pitch = part_.pitch(), width = groove->to - groove->from,
+                 beside = groove->from == R.s_to ? R.s_to : R.s_from, from = R.lookup(R.mid, beside) - pitch / 2;
+    const int rows = std::max(1, int(std::ceil(width / 1.0)));
     for (int k = 0; k < kFloorStrips; ++k)
       for (int q = 0; q < rows; ++q) {
         const double a = from + pitch * k / kFloorStrips, b = from + pitch * (k + 1) / kFloorStrips;
-        const double r0 = R.r_out + (next - R.r_out) * q / rows, r1 = R.r_out + (next - R.r_out) * (q + 1) / rows;
-        add_flat({at(r0, a), at(r0, b), at(r1, a), at(r1, b)}, {tooth_space::Piece::groove}, {a, r0}, {b, r1});
+        const double s0 = groove->from + width * q / rows, s1 = groove->from + width * (q + 1) / rows;
+        add_flat({chart_.place(s0, a, floor), chart_.place(s0, b, floor), chart_.place(s1, a, floor),
+                  chart_.place(s1, b, floor)},
+                 {tooth_space::Piece::groove}, {a, s0}, {b, s1});
       }
   }
 
@@ -281,16 +324,16 @@ class Maker {
 
   void body_patches() {
     BodyRing ring;
-    ring.r_in = R.r_in;
-    ring.r_out = R.r_out;
+    ring.s_from = R.s_from;
+    ring.s_to = R.s_to;
     ring.base_mm = R.base_mm;
-    ring.floor_mm = grooved() ? gear_.groove_floor() : 0;
-    ring.table_r = R.table_r;
+    ring.floor_mm = part_.groove_floor().value_or(0);
+    ring.table_s = R.table_s;
     ring.tip = tip_;
     ring.tip_bend = tip_bend_;
     ring.edge = {R.tip_plus, R.tip_minus};
-    for (double& azimuth : ring.edge[1]) azimuth -= gear_.pitch();
-    ring.border = {end_border(end_face(false), R.end_in), end_border(end_face(true), R.end_out)};
+    for (double& azimuth : ring.edge[1]) azimuth -= part_.pitch();
+    ring.border = {end_border(end_face(false), R.end_from), end_border(end_face(true), R.end_to)};
     ring.border_sag = border_sag_;
     R.patches = std::make_unique<BodyPatches>(space_, std::move(ring), R.cells.size());
     // Blocks of the sheet: fillets bend quickly across, and slowly along the tooth.
@@ -368,10 +411,10 @@ class Maker {
   void add_other(std::size_t n, std::vector<clearance::Facet>& others) {
     const auto& quad = R.patches->quad(n);
     R.facet_sag = std::max(R.facet_sag, facet_sag(n, quad));
-    const int about = 1 + int(std::ceil(reach_ / (gear_.pitch() * R.r_in)));
+    const int about = 1 + int(std::ceil(reach_ / (part_.pitch() * R.least_radius)));
     for (int tooth = -about; tooth <= about; ++tooth) {
       std::array<Vec3, 4> c;
-      for (std::size_t k = 0; k < 4; ++k) c[k] = turned(quad.corner[k], tooth * gear_.pitch());
+      for (std::size_t k = 0; k < 4; ++k) c[k] = turned(quad.corner[k], tooth * part_.pitch());
       others.push_back({{c[0], c[1], c[2]}, std::uint32_t(n)});
       others.push_back({{c[0], c[2], c[3]}, std::uint32_t(n)});
     }
@@ -385,9 +428,10 @@ class Maker {
     BodySurface surface;
     Vec2 low, high;
   };
-  const face_gear::FaceGear& gear_;
+  const tooth_space::ToothedPart& part_;
   int zone_;
-  const face_gear::SpaceSheet& space_;
+  const tooth_space::ToothSpace& space_;
+  const tooth_space::Chart& chart_;
   GearRing& R;
   double reach_;
   std::vector<Box> boxes_;
@@ -400,79 +444,56 @@ class Maker {
   std::array<std::vector<std::optional<CurveBend>>, 2> tip_bend_;
 };
 
-/// A flank whose fold lies below the tip surface somewhere on the ring, with the radius from which it reaches it.
-std::optional<Refusal> flank_below_tip(const face_gear::SpaceSheet& space, const std::string& key, int zone) {
-  constexpr int kSections = 16, kHalvings = 30;
-  const auto& ring = space.ring().zone;
-  const double inner = ring.inner_radius_mm, step = (ring.outer_radius_mm - inner) / kSections;
-  for (const int side : {1, -1})
-    for (int k = kSections; k >= 0; --k) {
-      double folded = inner + k * step, reaches = folded + step;
-      if (space.tip_edge(side, folded)) continue;
-      for (int n = 0; n < kHalvings && k < kSections; ++n) {
-        const double middle = 0.5 * (folded + reaches);
-        (space.tip_edge(side, middle) ? reaches : folded) = middle;
-      }
-      const std::string way_out =
-          k < kSections
-              ? fmt::format("an inner_radius of at least {:.4f} mm would do", reaches)
-              : std::string("no ring that ends there would do: fewer shaper teeth or more pressure angle are needed");
-      return Refusal{
-          key,
-          fail("zone {}: at radius {:.4f} mm flank side {:+d} folds back (undercut) below the tip surface at height "
-               "{:.4f} mm; {}",
-               zone, inner + k * step, side, space.surface().z_tip(inner + k * step), way_out)};
-    }
-  return {};
-}
-
 }  // namespace
 
-Expected<std::unique_ptr<GearRing>, Refusal> GearRing::make(const face_gear::FaceGear& gear, int zone,
+Expected<std::unique_ptr<GearRing>, Refusal> GearRing::make(const tooth_space::ToothedPart& part, int zone,
                                                             double reach_mm) {
-  const auto& ring = gear.rings()[std::size_t(zone)];
-  const double r_in = ring.zone.inner_radius_mm, r_out = ring.zone.outer_radius_mm;
-  const double beyond = std::min(reach_mm, 0.25 * (r_out - r_in) + 1.0);
-  const int stations = std::clamp(int((r_out - r_in + 2 * beyond) / kCellLength) + 2, 9, 400);
-  const face_gear::SpaceSheet space(gear.parameters(), ring);
-  auto out = std::make_unique<GearRing>(space, r_in - beyond, r_out + beyond, stations);
-  out->r_in = r_in;
-  out->r_out = r_out;
+  const tooth_space::ToothSpace& space = part.space(zone);
+  const tooth_space::Outline& ring = space.outline();
+  const double width = ring.s_to - ring.s_from, beyond = std::min(reach_mm, 0.25 * width + 1.0);
+  const int stations = std::clamp(int((width + 2 * beyond) / kCellLength) + 2, 9, 400);
+  auto out = std::make_unique<GearRing>(space, ring.s_from - beyond, ring.s_to + beyond, stations);
+  out->s_from = ring.s_from;
+  out->s_to = ring.s_to;
   const auto& sheet = out->sheet;
   const std::string key = "zone[" + std::to_string(zone) + "]";
-  if (sheet.empty())
-    return Refusal{
-        key,
-        fail("zone {}: the flanks and fillets of the tooth space are found at no radius between {:.4f} and {:.4f} mm",
-             zone, r_in - beyond, r_out + beyond)};
-  if (sheet.r_from() > r_in || sheet.r_to() < r_out)
+  if (sheet.empty()) {
+    const auto [from, to] = ring.told(ring.s_from - beyond, ring.s_to + beyond);
+    return Refusal{key, fail("zone {}: the flanks and fillets of the tooth space are found at no {} between {:.4f} and "
+                             "{:.4f} mm",
+                             zone, ring.along, from, to)};
+  }
+  if (sheet.r_from() > ring.s_from || sheet.r_to() < ring.s_to) {
+    const auto [from, to] = ring.told(sheet.r_from(), sheet.r_to());
+    const auto [whole_from, whole_to] = ring.told(ring.s_from, ring.s_to);
     return Refusal{key, fail("zone {}: the flanks and fillets of the tooth space are found from "
-                             "radius {:.4f} to {:.4f} mm only, the ring is {:.4f} to {:.4f} mm",
-                             zone, sheet.r_from(), sheet.r_to(), r_in, r_out)};
-  if (auto refusal = flank_below_tip(out->space, key, zone)) return std::move(*refusal);
-  Maker(gear, zone, out->space, *out, reach_mm).make();
+                             "{} {:.4f} to {:.4f} mm only, the ring is {:.4f} to {:.4f} mm",
+                             zone, ring.along, from, to, whole_from, whole_to)};
+  }
+  if (auto refusal = part.refusal(zone)) return std::move(*refusal);
+  Maker(part, zone, *out, reach_mm).make();
   return out;
 }
 
 bool GearRing::on_ring(const Vec3& p) const {
-  const double rp = radius(p);
-  return rp >= r_in - 1e-9 && rp <= r_out + 1e-9 && p.z() <= space.surface().z_tip(rp) + 1e-9;
+  const double s = chart.along(p);
+  return s >= s_from - 1e-9 && s <= s_to + 1e-9 && chart.up(p) <= space.tip(s) + 1e-9;
 }
 
-bool GearRing::over_land(double azimuth, double r) const {
-  return azimuth <= lookup(tip_plus, r) || azimuth >= lookup(tip_minus, r);
+bool GearRing::over_land(double azimuth, double s) const {
+  return azimuth <= lookup(tip_plus, s) || azimuth >= lookup(tip_minus, s);
 }
 
-double GearRing::to_tip_meridian(double r, double z, double& foot) const {
-  const double dr = r_out - r_in, dz = z_tip_out - z_tip_in;
-  const double t = std::clamp(((r - r_in) * dr + (z - z_tip_in) * dz) / (dr * dr + dz * dz), 0.0, 1.0);
-  foot = r_in + t * dr;
-  return std::hypot(r - foot, z - z_tip_in - t * dz) - tip_sag;
+double GearRing::to_tip_meridian(double s, double h, double& foot) const {
+  const double ds = s_to - s_from, dh = tip_to - tip_from;
+  const double t = std::clamp(((s - s_from) * ds + (h - tip_from) * dh) / (ds * ds + dh * dh), 0.0, 1.0);
+  foot = s_from + t * ds;
+  return std::hypot(s - foot, h - tip_from - t * dh) - tip_sag;
 }
 
-double GearRing::lookup(const std::vector<double>& y, double r) const {
+double GearRing::lookup(const std::vector<double>& y, double s) const {
   const double t =
-      std::clamp((r - table_r.front()) / (table_r.back() - table_r.front()), 0.0, 1.0) * double(y.size() - 1);
+      std::clamp((s - table_s.front()) / (table_s.back() - table_s.front()), 0.0, 1.0) * double(y.size() - 1);
   const auto k = std::min(std::size_t(t), y.size() - 2);
   return y[k] + (t - double(k)) * (y[k + 1] - y[k]);
 }
@@ -481,8 +502,8 @@ namespace {
 
 /// The profile runs from tip to tip; `point(k)` is a place of it, k < count.
 template <typename Point>
-bool inside_profile(std::size_t count, const Point& point, double azimuth, double z, double z_tip) {
-  if (z >= z_tip) return false;
+bool inside_profile(std::size_t count, const Point& point, double azimuth, double h, double tip) {
+  if (h >= tip) return false;
   Vec2 a = point(0);
   if (azimuth <= a.x() || azimuth >= point(count - 1).x()) return true;
   // Straight up from a place in the material the profile is crossed an odd number of times, also where a flank leans
@@ -490,7 +511,7 @@ bool inside_profile(std::size_t count, const Point& point, double azimuth, doubl
   bool inside = false;
   for (std::size_t k = 1; k < count; ++k) {
     const Vec2 b = point(k);
-    if ((a.x() <= azimuth) != (b.x() <= azimuth) && z < a.y() + (azimuth - a.x()) / (b.x() - a.x()) * (b.y() - a.y()))
+    if ((a.x() <= azimuth) != (b.x() <= azimuth) && h < a.y() + (azimuth - a.x()) / (b.x() - a.x()) * (b.y() - a.y()))
       inside = !inside;
     a = b;
   }
@@ -499,19 +520,19 @@ bool inside_profile(std::size_t count, const Point& point, double azimuth, doubl
 
 }  // namespace
 
-bool GearRing::in_material_at(double r, double azimuth, double z, double z_tip) const {
+bool GearRing::in_material_at(double s, double azimuth, double h, double tip) const {
   const auto& st = sheet.stations();
   const double last = double(st.size() - 1),
-               t = std::clamp((r - st.front().r) / (st.back().r - st.front().r) * last, 0.0, last);
+               t = std::clamp((s - st.front().r) / (st.back().r - st.front().r) * last, 0.0, last);
   const std::size_t j = std::min(std::size_t(t), st.size() - 2);
   const auto &at = profiles[j], &step = profile_steps[j];
   return inside_profile(
-      at.size(), [&, x = t - double(j)](std::size_t k) -> Vec2 { return at[k] + x * step[k]; }, azimuth, z, z_tip);
+      at.size(), [&, x = t - double(j)](std::size_t k) -> Vec2 { return at[k] + x * step[k]; }, azimuth, h, tip);
 }
 
-bool in_material(const std::vector<Vec2>& profile, double azimuth, double z, double z_tip) {
+bool in_material(const std::vector<Vec2>& profile, double azimuth, double h, double tip) {
   return inside_profile(
-      profile.size(), [&](std::size_t k) { return profile[k]; }, azimuth, z, z_tip);
+      profile.size(), [&](std::size_t k) { return profile[k]; }, azimuth, h, tip);
 }
 
 }  // namespace toothpath::analytic

@@ -1,6 +1,6 @@
-// One ring of a finished face gear as it is searched: cells over the working sheet of one tooth space, lands, end faces
-// and groove floor, the polylines of its edges, and tables over the radius. Made once; `GearDistance` and the bodies
-// ask it.
+// One ring of a finished part as it is searched: cells over the working sheet of one tooth space, lands, end faces and
+// groove floor, the polylines of its edges, and tables along the teeth. Made once; `GearDistance` and the bodies ask
+// it.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,9 @@
 #include "cam/analytic/gear_distance.h"
 #include "cam/analytic/spatial_index.h"
 #include "cam/clearance/facet_tree.h"
+#include "geometry/base/result.h"
 #include "geometry/tooth_space/offset_sheet.h"
+#include "geometry/tooth_space/toothed_part.h"
 
 namespace toothpath::analytic {
 
@@ -32,10 +34,12 @@ struct SheetQuad {
 
 struct GearRing {
   using Cell = GearDistance::Cell;
-  face_gear::SpaceSheet space;
+  const tooth_space::ToothSpace& space;
+  tooth_space::Chart chart;
   tooth_space::OffsetSheet sheet;
-  double r_in = 0, r_out = 0;
-  double base_mm = 0;  ///< height at which the cells of the ends stop
+  double s_from = 0, s_to = 0;
+  double base_mm = 0;       ///< height at which the cells of the ends stop
+  double least_radius = 0;  ///< of all cells
   std::vector<Cell> cells;
   std::unique_ptr<SpatialIndex> index;
   std::vector<SheetQuad> quads;                      ///< of the sheet
@@ -48,39 +52,41 @@ struct GearRing {
   double edge_sag = 0;               ///< greatest of the edges
   std::size_t unproven_edges = 0;    ///< stretches of an edge for which only the sag that showed is known
   double tip_sag = 0;                ///< of the tip surface's meridian against the straight line between its ends
-  double z_tip_in = 0, z_tip_out = 0;
-  std::vector<double> table_r, mid, tip_plus, tip_minus;  ///< azimuths over r
-  std::vector<double> opening;                            ///< azimuth of the middle between the tip edges, over r
+  double tip_from = 0, tip_to = 0;  ///< its heights there
+  double tip_slope = 0;             ///< the most by which it rises or falls, mm/mm
+  std::vector<double> table_s, mid, tip_plus, tip_minus;  ///< azimuths over s
+  std::vector<double> opening;                            ///< azimuth of the middle between the tip edges, over s
   double opening_slope = 0;                               ///< the most by which it turns, rad/mm
-  std::vector<std::vector<Vec2>> profiles;                ///< (azimuth, z) of the sheet at every station
+  std::vector<std::vector<Vec2>> profiles;                ///< (azimuth, h) of the sheet at every station
   std::vector<std::vector<Vec2>> profile_steps;  ///< from there to the next station, the azimuth the short way round
-  std::vector<Vec2> end_in, end_out;             ///< the same at the ends, tip to tip
+  std::vector<Vec2> end_from, end_to;            ///< the same at the ends, tip to tip
   std::vector<std::array<Vec3, 3>> triangles;    ///< of the cells, for bodies
   std::unique_ptr<BodyPatches> patches;          ///< the same cells on the exact surface
 
-  /// The sheet of the surface itself at `stations` radii.
-  GearRing(const face_gear::SpaceSheet& s, double r_from, double r_to, int stations)
-      : space(s), sheet(space, 0.0, r_from, r_to, stations) {}
-  GearRing(const GearRing&) = delete;  // the sheet refers to the space
+  /// The sheet of the surface itself at `stations` places along the teeth.
+  GearRing(const tooth_space::ToothSpace& t, double sheet_from, double sheet_to, int stations)
+      : space(t), chart(t.outline().chart), sheet(space, 0.0, sheet_from, sheet_to, stations) {}
+  GearRing(const GearRing&) = delete;
   GearRing& operator=(const GearRing&) = delete;
 
-  /// Ring `zone` of the gear, for distances up to `reach_mm`; a refusal where its surfaces cannot be followed over its
-  /// whole width.
-  static Expected<std::unique_ptr<GearRing>, Refusal> make(const face_gear::FaceGear& gear, int zone, double reach_mm);
+  /// Ring `zone` of the part, for distances up to `reach_mm`; a refusal where its surfaces cannot be followed over its
+  /// whole width. The part must outlive it.
+  static Expected<std::unique_ptr<GearRing>, Refusal> make(const tooth_space::ToothedPart& part, int zone,
+                                                           double reach_mm);
 
   [[nodiscard]] bool on_ring(const Vec3& p) const;
-  /// Is the azimuth over the top land at radius r?
-  [[nodiscard]] bool over_land(double azimuth, double r) const;
-  /// Distance to the tip surface's meridian in the plane (r, z), from below; `foot` is the radius of its foot.
-  [[nodiscard]] double to_tip_meridian(double r, double z, double& foot) const;
-  /// Is the place at radius r inside the material? By the profile across the space there: between the stations, since a
-  /// conical root rises along the tooth.
-  [[nodiscard]] bool in_material_at(double r, double azimuth, double z, double z_tip) const;
-  /// A table over the radius.
-  [[nodiscard]] double lookup(const std::vector<double>& y, double r) const;
+  /// Is the azimuth over the top land at s?
+  [[nodiscard]] bool over_land(double azimuth, double s) const;
+  /// Distance to the tip surface's meridian in the plane (s, h), from below; `foot` is s of its foot.
+  [[nodiscard]] double to_tip_meridian(double s, double h, double& foot) const;
+  /// Is the place at s inside the material? By the profile across the space there: between the stations, since a root
+  /// may rise along the tooth.
+  [[nodiscard]] bool in_material_at(double s, double azimuth, double h, double tip) const;
+  /// A table over s.
+  [[nodiscard]] double lookup(const std::vector<double>& y, double s) const;
 };
 
-/// Is (azimuth, z) at this profile inside the material? The profile runs from tip to tip.
-[[nodiscard]] bool in_material(const std::vector<Vec2>& profile, double azimuth, double z, double z_tip);
+/// Is (azimuth, h) at this profile inside the material? The profile runs from tip to tip.
+[[nodiscard]] bool in_material(const std::vector<Vec2>& profile, double azimuth, double h, double tip);
 
 }  // namespace toothpath::analytic

@@ -53,6 +53,22 @@ proof::WorstPlace place_of(const SweptGap& gap, const path::ToolMotion& m, tool:
   return place_of(q, m, -gap.measured_mm, body);
 }
 
+/// The blank below a height, as a ring about the axis.
+proof::RapidObstacle obstacle_of(const tooth_space::ToothedPart& part, double height) {
+  const tooth_space::Chart& chart = part.chart();
+  double from = INFINITY, to = -INFINITY;
+  for (int zone = 0; zone < part.zones(); ++zone) {
+    from = std::min(from, part.space(zone).outline().s_from);
+    to = std::max(to, part.space(zone).outline().s_to);
+  }
+  proof::RapidObstacle out;
+  out.outer_radius_mm = chart.r(to, height);
+  out.top_mm = chart.z(from, height);
+  if (chart.sine == 0) out.inner_radius_mm = from;
+  if (chart.cosine == 0) out.bottom_mm = chart.z(to, height);
+  return out;
+}
+
 double arm_of(const tool::Frustum& f) { return std::hypot(f.to, std::max(f.radius_from, f.radius_to)); }
 
 /// How far the parts of a tool reach from its tip: those of the cutter as its sweep tells them apart, then shank and
@@ -108,8 +124,7 @@ class Chunk {
       if (!proven.empty()) proven[n] = -gap;
     }
     if (m.rapid) {
-      const proof::RapidObstacle blank{part_.gear().outer_radius(), part_.gear().inner_radius(), o_.rapid_height_mm,
-                                       -std::numeric_limits<double>::infinity()};
+      const proof::RapidObstacle blank = obstacle_of(part_.part(), o_.rapid_height_mm);
       const auto& used = tools_[std::size_t(tool)];
       const auto proof =
           used.ball_mill ? proof::prove_rapid(m, *used.ball_mill, blank) : proof::prove_rapid(m, used, blank);

@@ -1,4 +1,4 @@
-// The gouge check of mills on a face gear: what every body of the tool was found to do along every motion, and a proven
+// The gouge check of mills on a toothed part: what every body of the tool was found to do along every motion, and a proven
 // bound for every moment between the blocks. Ball and flute: cam/analytic/cutter_sweep.h. Cutting parts of any profile:
 // cam/analytic/profile_sweep.h. Shank and holder: cam/analytic/body_sweep.h. Rapids: cam/proof/rapid_clearance.h. Why
 // the bounds hold: docs/proof.md.
@@ -24,7 +24,7 @@ namespace toothpath::analytic {
 
 struct GougeCheckOptions {
   proof::ProofLimits limits;   ///< what stands against them is refused
-  double rapid_height_mm = 0;  ///< rapids must keep every body above this z, or radially off the rings
+  double rapid_height_mm = 0;  ///< rapids must keep every body above this h of the chart, or beside the rings
 };
 
 class GougeCheck {

@@ -57,29 +57,50 @@ std::vector<double> end_edge_sags(const tooth_space::ToothSpace& space, const st
 
 std::vector<std::optional<CurveBend>> tip_bends(const tooth_space::ToothSpace& space, int side,
                                                 const std::vector<std::optional<tooth_space::EdgePlace>>& places,
-                                                const std::vector<double>& radii) {
+                                                const std::vector<double>& stations) {
   std::vector<std::optional<CurveBend>> bends;
   for (std::size_t k = 0; k + 1 < places.size(); ++k)
     bends.push_back(places[k] && places[k + 1]
-                        ? space.tip_azimuth(side, *places[k], radii[k], *places[k + 1], radii[k + 1])
+                        ? space.tip_azimuth(side, *places[k], stations[k], *places[k + 1], stations[k + 1])
                         : std::nullopt);
   return bends;
 }
 
+TipMeridian::TipMeridian(const tooth_space::ToothSpace& space, double s_from, double s_to) {
+  const tooth_space::Chart& chart = space.outline().chart;
+  const CurveBend h = space.tip_bend(s_from, s_to);
+  z2 = chart.cosine * h.bend;
+  if (chart.sine == 0) {
+    r = Interval(s_from, s_to);
+    r1 = 1.0;
+    r2 = 0.0;
+    return;
+  }
+  // By the mean value theorem about the middle.
+  const double middle = 0.5 * (s_from + s_to), half = 0.5 * (s_to - s_from);
+  r1 = Interval(chart.cosine) + chart.sine * h.slope;
+  r2 = chart.sine * h.bend;
+  const double way = r1.magnitude() * half * (1 + 1e-12), r_middle = chart.r(middle, space.tip(middle)),
+               rounding = 1e-14 * std::abs(r_middle);
+  r = Interval(r_middle - way - rounding, r_middle + way + rounding);
+}
+
 std::vector<double> tip_edge_sags(const tooth_space::ToothSpace& space,
                                   const std::vector<std::optional<CurveBend>>& bends,
-                                  const std::vector<double>& radii) {
+                                  const std::vector<double>& stations) {
   std::vector<double> sags;
   for (std::size_t k = 0; k < bends.size(); ++k) {
     if (!bends[k]) {
       sags.push_back(-1);
       continue;
     }
-    // (r cos A, r sin A, z): second derivatives -r A'^2 outwards, 2 A' + r A'' along the circle, z'' upwards.
-    const double r = radii[k + 1], step = r - radii[k], a1 = bends[k]->slope.magnitude(),
+    // (r cos A, r sin A, z): second derivatives r'' - r A'^2 outwards, 2 r' A' + r A'' along the circle, z'' upwards.
+    const TipMeridian tip(space, stations[k], stations[k + 1]);
+    const double step = stations[k + 1] - stations[k], r = tip.r.magnitude(), a1 = bends[k]->slope.magnitude(),
                  a2 = bends[k]->bend.magnitude();
     sags.push_back(0.125 * step * step *
-                   std::hypot(r * a1 * a1, 2 * a1 + r * a2, space.tip_bend(radii[k], r).bend.magnitude()));
+                   std::hypot(tip.r2.magnitude() + r * a1 * a1, 2 * tip.r1.magnitude() * a1 + r * a2,
+                              tip.z2.magnitude()));
   }
   return sags;
 }

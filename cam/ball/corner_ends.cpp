@@ -24,13 +24,13 @@ class OpenEnd {
           bool plus, bool upper)
       : sheet_(sheet), o_(o), distance_(distance), inner_(inner), plus_(plus), upper_(upper) {
     const auto& zone = sheet.space().outline();
-    end_radius_ = inner ? zone.s_from : zone.s_to;
+    end_ = inner ? zone.s_from : zone.s_to;
   }
 
   std::vector<BallPass> passes() const {
-    // Centre radii: where the corner closes, and where the farthest pass leaves the ring.
-    const auto closed = solve([&](double r) { return contact_radius(other_edge(r), r); });
-    const auto opened = solve([&](double r) { return contact_radius(place(1, r), r); });
+    // s of the centre: where the corner closes, and where the farthest pass leaves the ring.
+    const auto closed = solve([&](double r) { return contact_at(other_edge(r), r); });
+    const auto opened = solve([&](double r) { return contact_at(place(1, r), r); });
     if (!closed || !opened) return {};
     const double inward = inner_ ? 1 : -1;
     if (inward * (*closed - *opened) < kShortestPass) return {};
@@ -60,20 +60,20 @@ class OpenEnd {
     const auto g = gap(r);
     return !g ? NAN : upper_ ? g->from : g->to;
   }
-  [[nodiscard]] double contact_radius(double sigma, double r) const {
+  [[nodiscard]] double contact_at(double sigma, double r) const {
     if (std::isnan(sigma)) return NAN;
     const auto s = sheet_.raw(sigma, r);
-    return s ? radius(s->contact.p) : NAN;
+    return s ? sheet_.space().outline().chart.along(s->contact.p) : NAN;
   }
-  /// Centre radius at which a contact lies at the end of the ring.
+  /// s of the centre at which a contact lies at the end of the ring.
   template <typename Contact>
   [[nodiscard]] std::optional<double> solve(const Contact& contact) const {
     double a = sheet_.r_from(), b = sheet_.r_to();
-    if (!(contact(a) < end_radius_) || !(contact(b) > end_radius_)) return {};
+    if (!(contact(a) < end_) || !(contact(b) > end_)) return {};
     for (int k = 0; k < 60 && b - a > 1e-9; ++k) {
       const double m = 0.5 * (a + b), at = contact(m);
       if (std::isnan(at)) return {};
-      (at < end_radius_ ? a : b) = m;
+      (at < end_ ? a : b) = m;
     }
     return 0.5 * (a + b);
   }
@@ -133,7 +133,7 @@ class OpenEnd {
 
   /// From the end of the ring to where the corner closes, at a share of the way from the crossing to the reach.
   [[nodiscard]] std::optional<BallPass> make_pass(double share, double closed) const {
-    const auto begin = solve([&](double r) { return contact_radius(place(share, r), r); });
+    const auto begin = solve([&](double r) { return contact_at(place(share, r), r); });
     if (!begin || std::abs(closed - *begin) < kShortestPass) return {};
     const auto curve = [&](double r) -> std::optional<BallPass::Point> {
       const double at = place(share, r);
@@ -162,7 +162,7 @@ class OpenEnd {
   const FinishingOptions& o_;
   const PartDistance& distance_;
   bool inner_, plus_, upper_;
-  double end_radius_ = 0;
+  double end_ = 0;
 };
 
 }  // namespace

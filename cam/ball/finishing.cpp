@@ -115,19 +115,19 @@ class FinishingPlanner {
   }
 
   [[nodiscard]] int samples() const { return 2 * int(sheet_.stations().size()); }
-  [[nodiscard]] double sample_radius(int k) const {
+  [[nodiscard]] double sample_at(int k) const {
     return sheet_.r_from() + (sheet_.r_to() - sheet_.r_from()) * k / samples();
   }
-  /// The pass as its neighbours see it at every sample radius between the ends of the sheet; nothing where the sheet
+  /// The pass as its neighbours see it at every sample between the ends of the sheet; nothing where the sheet
   /// has no point.
   [[nodiscard]] std::vector<std::optional<PassLine>> lines_of(const Place& sigma) const {
     std::vector<std::optional<tooth_space::SheetPoint>> places;
-    for (int k = 0; k <= samples(); ++k) places.push_back(sheet_.at(sigma(sample_radius(k)), sample_radius(k)));
+    for (int k = 0; k <= samples(); ++k) places.push_back(sheet_.at(sigma(sample_at(k)), sample_at(k)));
     const auto centre = [&](std::size_t k) { return places[k] ? std::optional(places[k]->centre) : std::nullopt; };
     std::vector<std::optional<PassLine>> lines(places.size());
     for (std::size_t k = 1; k + 1 < places.size(); ++k)
       if (places[k] && (places[k - 1] || places[k + 1]))
-        lines[k] = PassLine(sigma(sample_radius(int(k))), *places[k], centre(k - 1), centre(k + 1));
+        lines[k] = PassLine(sigma(sample_at(int(k))), *places[k], centre(k - 1), centre(k + 1));
     return lines;
   }
 
@@ -144,7 +144,7 @@ class FinishingPlanner {
         if (!a || !b || !on_ring(*a, *b)) continue;
         const bool flat = std::max(a->sigma, b->sigma) < 0.9 || std::min(a->sigma, b->sigma) > 4.1;
         if (flat && k % 2 != 0) continue;  // the flanks bend slowly
-        const double r = sample_radius(k);
+        const double r = sample_at(k);
         const Crest crest = count_.cusp(*a, *b, r, sheet_.gaps(r));
         if (crest.height_mm > share * o_.scallop(a->sigma, b->sigma))
           out[i].push_back({r, std::min(a->sigma, b->sigma), std::max(a->sigma, b->sigma), crest});
@@ -154,7 +154,8 @@ class FinishingPlanner {
   }
   /// Does the crest between two passes stand on the ring, or hardly beyond its ends?
   [[nodiscard]] bool on_ring(const PassLine& a, const PassLine& b) const {
-    const auto [low, high] = std::minmax({radius(a.at.contact.p), radius(b.at.contact.p)});
+    const auto& chart = sheet_.space().outline().chart;
+    const auto [low, high] = std::minmax({chart.along(a.at.contact.p), chart.along(b.at.contact.p)});
     const double beyond = high - low + 0.02 * o_.ball_radius_mm;
     const auto& ring = sheet_.space().outline();
     return high > ring.s_from - beyond && low < ring.s_to + beyond;
@@ -168,8 +169,8 @@ class FinishingPlanner {
     for (std::size_t j = 0; j < values.size(); ++j) {
       const auto& nodes = sheet_.stations()[j].nodes;
       const bool on = std::any_of(nodes.begin(), nodes.end(), [&](const tooth_space::OffsetSheet::Node& n) {
-        const double r = radius(n.at.contact.p);
-        return r >= ring.s_from && r <= ring.s_to;
+        const double s = ring.chart.along(n.at.contact.p);
+        return s >= ring.s_from && s <= ring.s_to;
       });
       if (on) most = std::max(most, values[j]);
     }
@@ -445,9 +446,11 @@ class FinishingPlanner {
 
 Result<FinishingPasses> plan_finishing(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options) {
   const auto& ring = sheet.space().outline();
-  if (sheet.empty() || sheet.r_from() >= sheet.r_to())
-    return fail("the ball centres of a {:.4f} mm ball find no surface between the radii {:.4f} and {:.4f}",
-                options.ball_radius_mm, ring.s_from, ring.s_to);
+  if (sheet.empty() || sheet.r_from() >= sheet.r_to()) {
+    const auto [from, to] = ring.told(ring.s_from, ring.s_to);
+    return fail("the ball centres of a {:.4f} mm ball find no surface between {} {:.4f} and {:.4f} mm",
+                options.ball_radius_mm, ring.along, from, to);
+  }
   return FinishingPlanner(sheet, options).run();
 }
 

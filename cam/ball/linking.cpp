@@ -1,11 +1,15 @@
 #include "cam/ball/linking.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 namespace toothpath::ball {
 namespace {
+
+constexpr double kFirstLift = 1, kFarthestLift = 1e6;  // mm
+constexpr int kLiftHalvings = 60;
 
 class Linker {
  public:
@@ -34,10 +38,29 @@ class Linker {
   [[nodiscard]] Vec3 tip(const Vec3& centre, const Vec3& axis) const { return centre - o_.centre_mm * axis; }
   /// The centre lifted along the axis until tip, shank and holder are above the clearance height.
   [[nodiscard]] Vec3 above(const Vec3& centre, const Vec3& axis) const {
+    if (!o_.clearance.flat()) return above_round(centre, axis);
     double lowest = -o_.centre_mm * axis.z();  // under the centre
     for (const auto& f : o_.bodies) lowest = std::min(lowest, tool::lowest_z(f, -o_.centre_mm * axis, axis));
-    const double lift = (o_.clearance_height_mm - lowest - centre.z()) / axis.z();
+    const double lift = (o_.clearance.top() - lowest - centre.z()) / axis.z();
     return centre + std::max(lift, 0.0) * axis;
+  }
+  /// The same where that height is a surface about the gear axis: the height of all of the tool grows along an axis
+  /// that points outwards.
+  [[nodiscard]] Vec3 above_round(const Vec3& centre, const Vec3& axis) const {
+    const auto over = [&](double lift) {
+      const Vec3 foot = tip(centre + lift * axis, axis);
+      double least = o_.clearance.over(std::array{foot});
+      for (const auto& f : o_.bodies) least = std::min(least, o_.clearance.over(f, foot, axis));
+      return least;
+    };
+    if (over(0) >= 0) return centre;
+    double low = 0, high = kFirstLift;
+    while (over(high) < 0 && high < kFarthestLift) high *= 2;
+    for (int k = 0; k < kLiftHalvings; ++k) {
+      const double middle = 0.5 * (low + high);
+      (over(middle) < 0 ? low : high) = middle;
+    }
+    return centre + high * axis;
   }
   void add(const Vec3& centre, const Vec3& axis, path::MoveKind kind, double feed) {
     out_.push_back({tip(centre, axis), axis, kind == path::MoveKind::rapid ? 0.0 : feed, kind, o_.zone, pass_});
@@ -49,10 +72,25 @@ class Linker {
       leave();
     }
     const Vec3 high = above(start, axis);
+    if (engaged_) around(high, axis);
     add(high, axis, path::MoveKind::rapid, 0);
     if ((high - start).norm() > o_.slow_mm)
       add(start + o_.slow_mm * axis, axis, path::MoveKind::engage, o_.link_feed_mm_min);
     add(start, axis, path::MoveKind::engage, o_.feed_mm_min);
+  }
+
+  /// Rapids towards a place above the clearance height, so short that none dips below it by much where it is round.
+  void around(const Vec3& to, const Vec3& axis) {
+    if (o_.clearance.flat()) return;
+    const Vec3 from = above(last_, last_axis_);
+    const double turn = std::abs(angle_from_to(from, to)), r = std::max(radius(from), radius(to));
+    const double most = std::sqrt(8 * o_.most_dip_mm / r);
+    const int steps = int(std::ceil(turn / most));
+    for (int k = 1; k < steps; ++k) {
+      const double t = double(k) / steps;
+      const Vec3 way = from + t * (to - from), a = blended(axis, t);
+      add(above(way, a), a, path::MoveKind::rapid, 0);
+    }
   }
 
   /// The hop from the end of the pass before, where there is one and it is the shorter way in time.

@@ -37,9 +37,9 @@ constexpr double kStockShare = 0.15;
 constexpr double kTurnMargin = 0.02;
 
 /// What is tried where a tool has no passes: shares of its diameter; of the module, how much farther out a zone begins
-/// that begins within `kCloseToLimit` of its limit; and to which that is told, mm.
+/// that begins close to its limit; and to which a diameter is told, mm.
 constexpr double kSmallerBalls[] = {0.85, 0.7, 0.5, 0.3}, kFartherOut[] = {0.02, 0.05, 0.1, 0.2, 0.4};
-constexpr double kCloseToLimit = 0.5, kToldSize = 0.01;
+constexpr double kToldSize = 0.01;
 
 /// Steps, of the ball radius, in which the ways of a pass are looked at.
 constexpr double kLookOfWay = 0.2;
@@ -105,7 +105,7 @@ class Planner::Work {
     const auto& op = operation(n);
     const auto& tool = tool_of(n);
     const double R = tool.radius_mm(), delta = R + op.allowance_mm;
-    const auto& ring = part_.space(zone).ring().zone;
+    const auto& ring = part_.space(zone).outline();
     const bool roughing = op.type == path::OperationType::roughing;
     // How far the ball may go beyond the ends: free into the air, limited where the other ring of teeth stands.
     const double wanted = roughing ? 0.6 * delta + 0.1 : 0.5 * R, room = room_beyond(zone, roughing, R, delta, wanted);
@@ -117,7 +117,7 @@ class Planner::Work {
     const double margin = std::max(delta, room) + 0.1;
     ZonePasses out{
         tooth_space::OffsetSheet(part_.space(zone), roughing ? delta + kRoughingPad : delta,
-                                 ring.inner_radius_mm - margin, ring.outer_radius_mm + margin, roughing ? 65 : 33),
+                                 ring.s_from - margin, ring.s_to + margin, roughing ? 65 : 33),
         {},
         {}};
     if (auto refusal = check_width(out.sheet, key_of(n), zone, tool)) return *refusal;
@@ -162,39 +162,30 @@ class Planner::Work {
       found.push_back(fmt::format("a diameter of {:.2f} mm (now {:g})", tool.diameter_mm, diameter));
       break;
     }
-    if (const auto radius = inner_radius_that_does(n, zone))
-      found.push_back(fmt::format("an inner_radius of {:.2f} mm (now {:g})", *radius,
-                                  part_.space(zone).ring().zone.inner_radius_mm));
+    if (auto words = later_begin_that_does(n, zone)) found.push_back(std::move(*words));
     if (found.empty()) return "; a smaller tool that would do was not found";
     return fmt::format("; would do, planned as a trial: {}", fmt::join(found, ", or "));
   }
-  /// Of a zone that begins close to where its flanks begin.
-  [[nodiscard]] std::optional<double> inner_radius_that_does(int n, int zone) const {
-    const auto& ring = part_.space(zone).ring();
-    const double module = part_.gear().parameters().module_mm, inner = ring.zone.inner_radius_mm;
-    if (ring.correction || inner > ring.limits.hard_inner_limit + kCloseToLimit * module) return {};
+  /// Of a zone that begins close to where its flanks begin, in words.
+  [[nodiscard]] std::optional<std::string> later_begin_that_does(int n, int zone) const {
     for (const double share : kFartherOut) {
-      face_gear::FaceGearParameters moved = part_.gear().parameters();
-      auto& its = moved.zones[std::size_t(zone)];
-      its.inner_radius_mm = std::ceil((inner + share * module) / kToldSize) * kToldSize;
-      if (!(its.inner_radius_mm < its.outer_radius_mm)) break;
-      auto gear = face_gear::FaceGear::make(moved);
-      if (gear.refused()) continue;
-      const face_gear::FaceGear made = std::move(gear).value();
-      const analytic::GearDistance part(made, reach_of(tools_));
+      auto moved = part_.part().begun_later(zone, share);
+      if (!moved) break;
+      if (!moved->part) continue;
+      const analytic::GearDistance part(moved->part, reach_of(tools_));
       if (part.refusal() || Work(part, tools_, operations_, o_).plan_passes(n, zone).refused()) continue;
-      return its.inner_radius_mm;
+      return std::move(moved->words);
     }
     return {};
   }
 
   /// Way that a ball has beyond the ends of a zone, at most `wanted`. mm
   [[nodiscard]] double room_beyond(int zone, bool roughing, double R, double delta, double wanted) const {
-    const auto& ring = part_.space(zone).ring().zone;
+    const auto& ring = part_.space(zone).outline();
     double room = wanted;
-    for (const auto& other : part_.gear().rings()) {
-      const double gap = std::max(other.zone.inner_radius_mm - ring.outer_radius_mm,
-                                  ring.inner_radius_mm - other.zone.outer_radius_mm);
+    for (int k = 0; k < part_.zones(); ++k) {
+      const auto& other = part_.space(k).outline();
+      const double gap = std::max(other.s_from - ring.s_to, ring.s_from - other.s_to);
       if (gap <= 0) continue;
       // The centre of a ball in contact at the end lies at most 0.7 delta beyond it.
       room = std::min(room, roughing ? gap - R - 0.1 : gap - 1.7 * delta - 0.05);
@@ -211,7 +202,7 @@ class Planner::Work {
     r.step_over_mm = op.step_over_mm;
     r.chord_mm = std::min(kChordShare * op.chord_tolerance_mm, chord_room(op));
     r.overrun_mm = room;
-    r.blank_top_mm = part_.gear().blank_top();
+    r.blank_top_mm = part_.part().blank_top();
     r.climb = op.climb;
     r.end_centre_mm = tool::end_centre_mm(tool_of(n));
     auto planned = plan_roughing(out.sheet, r, cleared_);
@@ -286,17 +277,17 @@ class Planner::Work {
     note_openings(zone, made.passes, summary);
     const auto& op = operation(n);
     const double R = tool_of(n).radius_mm();
-    const auto& ring = part_.space(zone).ring().zone;
+    const auto& ring = part_.space(zone).outline();
+    const tooth_space::Chart& chart = ring.chart;
     link.centre_mm = tool::end_centre_mm(tool_of(n));
     link.axis = direction.axis;
-    link.clearance_height_mm = part_.gear().blank_top() + o_.rapid_clearance_mm;
+    link.clearance = analytic::Roof(chart, part_.part().blank_top() + o_.rapid_clearance_mm);
+    link.most_dip_mm = 0.5 * o_.rapid_clearance_mm;
     link.hop_mm = 0.2 * R + op.allowance_mm;
-    link.longest_hop_mm = 1.5 * part_.gear().pitch() * ring.outer_radius_mm;
+    link.longest_hop_mm = 1.5 * part_.part().pitch() * chart.r(ring.s_to, part_.space(zone).tip(ring.s_to));
     link.feed_mm_min = op.feed_mm_min;
     link.link_feed_mm_min = std::max(op.feed_mm_min, o_.link_feed_mm_min);
     link.slow_mm = slow_way(operations_, tools_, std::size_t(n));
-    link.inner_radius_mm = ring.inner_radius_mm;
-    link.outer_radius_mm = ring.outer_radius_mm;
     link.zone = zone;
     link.bodies = tool::shank_and_holder(tool_of(n));
     // A turn past the pole is left to the clearance height, but for axes that the job prescribes.
@@ -528,16 +519,7 @@ class Planner::Work {
             fail("tool {} in zone {}: its ball of radius {:.4f} mm would cut {:.4f} mm into the finished surface with "
                  "its centre at radius {:.4f}, height {:.4f}{}; the limit is {:.4f} mm{}",
                  tool.number, zone, tool.radius_mm(), cut, radius(centre), centre.z(), where, o_.limits.gouge_mm,
-                 beside_the_limit(zone))};
-  }
-
-  /// Of a zone that begins close to where its flanks begin, in words.
-  [[nodiscard]] std::string beside_the_limit(int zone) const {
-    const auto& ring = part_.space(zone).ring();
-    const double beyond = ring.zone.inner_radius_mm - ring.limits.hard_inner_limit;
-    if (beyond > kCloseToLimit * part_.gear().parameters().module_mm) return "";
-    return fmt::format(" (the zone begins {:.4f} mm outside its limit, {:.4f} mm)", beyond,
-                       ring.limits.hard_inner_limit);
+                 part_.part().close_to_limit(zone))};
   }
 
   /// Run-outs go straight on beyond the ends of the ring; where the end of a tooth stands in the way (close to an
@@ -580,13 +562,13 @@ class Planner::Work {
                                              tool.number, tool.diameter_mm, zone)};
     for (const auto& s : sheet.stations()) {
       const auto &a = s.nodes.front(), &b = s.nodes.back();
-      const double width = (b.azimuth - a.azimuth) * s.r;
+      const double width = (b.azimuth - a.azimuth) * ring.chart.r(s.r, ring.chart.up(a.at.centre));
       if (width <= 0)
         return PlanRefusal{
             key + ".tool",
-            fail("tool {} (ball of {:.4f} mm) is wider than the tooth space of zone {}: at radius {:.3f} its centre "
+            fail("tool {} (ball of {:.4f} mm) is wider than the tooth space of zone {}: at {} {:.3f} its centre "
                  "has {:.4f} mm of room between the flanks at the tip, it needs more than 0",
-                 tool.number, tool.diameter_mm, zone, s.r, width)};
+                 tool.number, tool.diameter_mm, zone, ring.along, ring.sign * s.r, width)};
     }
     return {};
   }
@@ -610,17 +592,21 @@ class Planner::Work {
   /// Does the cutting part stay beside all rings of teeth?
   [[nodiscard]] bool hop_is_outside(const HopEnd& a, const HopEnd& b, const tool::ToolAssembly& tool) const {
     const double widest = std::max(tool.radius_mm(), tool::profile_of(tool).cutting().largest_radius());
-    double low = INFINITY, high = 0;
+    const tooth_space::Chart& chart = part_.part().chart();
+    double low = INFINITY, high = -INFINITY;
     for (const double above : {0.0, tool.flute_length_mm - tool::end_centre_mm(tool)}) {
-      const Vec2 from = (a.centre + above * a.axis).head<2>(), to = (b.centre + above * b.axis).head<2>();
-      const Vec2 way = to - from;
-      const double t = way.isZero() ? 0 : std::clamp(-from.dot(way) / way.squaredNorm(), 0.0, 1.0);
-      low = std::min(low, (from + t * way).norm() - widest);
-      high = std::max({high, from.norm() + widest, to.norm() + widest});
+      const Vec3 from = a.centre + above * a.axis, to = b.centre + above * b.axis;
+      const Vec2 start = from.head<2>(), way = to.head<2>() - start;
+      const double t = way.isZero() ? 0 : std::clamp(-start.dot(way) / way.squaredNorm(), 0.0, 1.0);
+      const auto z = std::minmax({from.z(), to.z()});
+      low = std::min(low, chart.cosine * (start + t * way).norm() - chart.sine * z.second - widest);
+      high = std::max(high, chart.cosine * std::max(start.norm(), to.head<2>().norm()) - chart.sine * z.first + widest);
     }
-    const auto& zones = part_.gear().parameters().zones;
-    return std::all_of(zones.begin(), zones.end(),
-                       [&](const auto& z) { return high < z.inner_radius_mm || low > z.outer_radius_mm; });
+    for (int zone = 0; zone < part_.zones(); ++zone) {
+      const auto& ring = part_.space(zone).outline();
+      if (!(high < ring.s_from || low > ring.s_to)) return false;
+    }
+    return true;
   }
 
   const analytic::GearDistance& part_;

@@ -151,6 +151,7 @@ Expected<Orientation, OrientationRefusal> prescribe_axes(const analytic::GearDis
   const Prover prover(part, tree, zone, tool, options);
   const PrescribedLean plus(operation.axis_plus), minus(operation.axis_minus);
   const PitchFrame& frame = prover.check().frame();
+  const tooth_space::Outline& ring = part.space(zone).outline();
   passes.erase(std::remove_if(passes.begin(), passes.end(), [](const BallPass& p) { return p.points.empty(); }),
                passes.end());
   std::vector<AxisRecords> made;
@@ -159,7 +160,7 @@ Expected<Orientation, OrientationRefusal> prescribe_axes(const analytic::GearDis
     const PassTrack track(pass);
     const PrescribedLean& lean = pass.outward == operation.climb ? plus : minus;
     const auto axis = [&](double s) {
-      const Vec2 q = lean.at(radius(track.point(s).centre));
+      const Vec2 q = lean.at(ring.sign * ring.chart.along(track.point(s).centre));
       return frame.axis(q.x(), q.y());
     };
     made.push_back(records_with_axes(track, axis, options.chord_mm, tool.radius_mm()));

@@ -9,7 +9,7 @@ namespace {
 // Of the ball's radius: where a pass has nothing to cut for longer, it is left and taken up again behind.
 constexpr double kShortestIdle = 6;
 
-/// Directions on the lower half of a ball: where it cuts.
+/// Directions on the lower half of a ball, -z down: where it cuts.
 std::vector<Vec3> lower_directions() {
   std::vector<Vec3> out{Vec3(0, 0, -1)};
   for (int ring = 1; ring <= 4; ++ring) {
@@ -26,7 +26,7 @@ std::vector<Vec3> lower_directions() {
 /// offset root surface.
 struct Walls {
   std::vector<double> plus_height, plus_azimuth, minus_height, minus_azimuth;  // heights descending
-  double root_z = 0;         // centre of a ball that touches the root surface, whether or not the walls let it
+  double root = 0;           // height of the centre of a ball that touches the root surface, whether or not the walls let it
   double bottom_height = 0;  // lowest centre that the walls allow
 };
 
@@ -43,11 +43,12 @@ double at_height(const std::vector<double>& height, const std::vector<double>& a
 
 Walls walls_of(const tooth_space::OffsetSheet& sheet, const tooth_space::OffsetSheet::Station& station) {
   Walls w;
+  const tooth_space::Chart& chart = sheet.space().outline().chart;
   const tooth_space::SheetGap* across = nullptr;
   for (const auto& g : station.gaps)
     if (tooth_space::corner_of(g) == tooth_space::SheetCorner::both) across = &g;
   for (const auto& node : station.nodes)
-    if (node.sigma == 2.5) w.root_z = node.at.centre.z();
+    if (node.sigma == 2.5) w.root = chart.up(node.at.centre);
   struct Place {
     double sigma, height, azimuth;
   };
@@ -55,7 +56,7 @@ Walls walls_of(const tooth_space::OffsetSheet& sheet, const tooth_space::OffsetS
   for (const auto& node : station.nodes) {
     const auto inside = [&](const tooth_space::SheetGap& g) { return node.sigma > g.from && node.sigma < g.to; };
     if (std::none_of(station.gaps.begin(), station.gaps.end(), inside))
-      places.push_back({node.sigma, node.at.centre.z() - w.root_z, node.azimuth});
+      places.push_back({node.sigma, chart.up(node.at.centre) - w.root, node.azimuth});
   }
   // The corners themselves, where the ball touches both of their walls: between the nodes beside them a blend would cut
   // in.
@@ -65,7 +66,7 @@ Walls walls_of(const tooth_space::OffsetSheet& sheet, const tooth_space::OffsetS
         const double reference = station.nodes[station.nodes.size() / 2].azimuth;
         const double azimuth =
             reference + std::remainder(std::atan2(s->centre.y(), s->centre.x()) - reference, 6.283185307179586);
-        places.push_back({sigma, s->centre.z() - w.root_z, azimuth});
+        places.push_back({sigma, chart.up(s->centre) - w.root, azimuth});
       }
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.sigma < b.sigma; });
   for (const auto& p : places) {
@@ -92,9 +93,11 @@ class RoughingPlanner {
 
   Result<RoughingPasses> run() {
     const auto& ring = sheet_.space().outline();
-    if (sheet_.empty())
-      return fail("a ball of {:.4f} mm with {:.4f} mm allowance finds no surface between the radii {:.4f} and {:.4f}",
-                  2 * o_.ball_radius_mm, o_.allowance_mm, ring.s_from, ring.s_to);
+    if (sheet_.empty()) {
+      const auto [from, to] = ring.told(ring.s_from, ring.s_to);
+      return fail("a ball of {:.4f} mm with {:.4f} mm allowance finds no surface between {} {:.4f} and {:.4f} mm",
+                  2 * o_.ball_radius_mm, o_.allowance_mm, ring.along, from, to);
+    }
     from_ = std::max(sheet_.r_from(), ring.s_from - o_.overrun_mm);
     to_ = std::min(sheet_.r_to(), ring.s_to + o_.overrun_mm);
     double lowest = INFINITY;
@@ -103,7 +106,7 @@ class RoughingPlanner {
       lowest = std::min(lowest, walls_.back().bottom_height);
       out_.reaches_root = out_.reaches_root && walls_.back().bottom_height == 0;
     }
-    const double top = o_.blank_top_mm + o_.end_centre_mm - walls_[walls_.size() / 2].root_z;
+    const double top = o_.blank_top_mm + o_.end_centre_mm - walls_[walls_.size() / 2].root;
     for (double height = top - o_.step_down_mm;; height -= o_.step_down_mm) {
       // The last layer follows the bottom: the root land, or the corner between both walls where the ball is too wide.
       const bool last = height <= lowest + 1e-6;
@@ -115,8 +118,9 @@ class RoughingPlanner {
   }
 
  private:
+  [[nodiscard]] const tooth_space::Chart& chart() const { return sheet_.space().outline().chart; }
   struct Width {
-    double plus = 0, minus = 0, z = 0;  // azimuths of the extreme centres and their height
+    double plus = 0, minus = 0, height = 0;  // azimuths of the extreme centres and their height
   };
   /// Between two stations everything is blended: the sheet of a roughing pass is made with a pad for that.
   [[nodiscard]] Width width(double height, double r) const {
@@ -130,7 +134,7 @@ class RoughingPlanner {
       const double share = k == j ? 1 - x : x, h = std::max(height, s.bottom_height);
       w.plus += share * at_height(s.plus_height, s.plus_azimuth, h);
       w.minus += share * at_height(s.minus_height, s.minus_azimuth, h);
-      w.z += share * (s.root_z + h);
+      w.height += share * (s.root + h);
     }
     if (w.minus < w.plus) w.plus = w.minus = 0.5 * (w.plus + w.minus);
     return w;
@@ -141,7 +145,7 @@ class RoughingPlanner {
     for (int k = 0; k <= 8; ++k) {
       const double r = from_ + (to_ - from_) * k / 8;
       const auto w = width(height, r);
-      widest = std::max(widest, r * (w.minus - w.plus));
+      widest = std::max(widest, chart().r(r, w.height) * (w.minus - w.plus));
     }
     const int count = widest < 1e-6 ? 1 : 1 + std::max(1, int(std::ceil(widest / o_.step_over_mm)));
     std::vector<double> shares;
@@ -157,7 +161,7 @@ class RoughingPlanner {
         const auto w = width(height, r);
         const double azimuth = w.plus + share * (w.minus - w.plus);
         BallPass::Point p;
-        p.centre = {r * std::cos(azimuth), r * std::sin(azimuth), w.z};
+        p.centre = chart().place(r, azimuth, w.height);
         p.contact = p.centre;
         return p;
       };
@@ -203,15 +207,22 @@ class RoughingPlanner {
     const auto& ring = sheet_.space().outline();
     const double worth = path::kSkinShare * 2 * o_.ball_radius_mm;
     const int places = std::max(1, int(std::ceil(way / (0.4 * o_.ball_radius_mm))));
-    for (int k = 0; k <= places; ++k)
+    for (int k = 0; k <= places; ++k) {
+      const Vec3 centre = from + (to - from) * (double(k) / places);
+      Mat3 down = Mat3::Identity();  // where the teeth stand upright
+      if (chart().sine > 0) {
+        const double at = azimuth(centre);
+        down << chart().along_at(at), Vec3(-std::sin(at), std::cos(at), 0), chart().up_at(at);
+      }
       for (const auto& direction : directions) {
-        const Vec3 q = from + (to - from) * (double(k) / places) + o_.ball_radius_mm * direction;
-        const double r = radius(q);
-        if (r < ring.s_from || r > ring.s_to || q.z() > o_.blank_top_mm) continue;
+        const Vec3 q = centre + o_.ball_radius_mm * (down * direction);
+        const double s = chart().along(q);
+        if (s < ring.s_from || s > ring.s_to || chart().up(q) > o_.blank_top_mm) continue;
         if (std::none_of(cleared_.begin(), cleared_.end(),
                          [&](const cut::Removed* removed) { return removed->excess(q, worth) < worth; }))
           return true;
       }
+    }
     return false;
   }
 

@@ -18,7 +18,7 @@ struct RoughingOptions {
   double end_centre_mm =
       0;  ///< height above the tip of the centre that is planned: the ball's radius, less for flatter ends
   double overrun_mm = 0;    ///< beyond both ends of the ring, for the ball centre
-  double blank_top_mm = 0;  ///< z of the blank at the middle of the ring
+  double blank_top_mm = 0;  ///< height of the blank at the middle of the ring
   bool climb = true;
 };
 

@@ -25,16 +25,19 @@ class PassMaker {
 
   [[nodiscard]] Result<SheetPass> run() const {
     const auto& ring = sheet_.space().outline();
-    double from = radius_of_contact_at(asked_.sigma, ring.s_from), to = radius_of_contact_at(asked_.sigma, ring.s_to);
+    double from = station_of_contact(asked_.sigma, ring.s_from), to = station_of_contact(asked_.sigma, ring.s_to);
     if (asked_.other) {
-      from = std::min(from, radius_of_contact_at(asked_.other, ring.s_from));
-      to = std::max(to, radius_of_contact_at(asked_.other, ring.s_to));
+      from = std::min(from, station_of_contact(asked_.other, ring.s_from));
+      to = std::max(to, station_of_contact(asked_.other, ring.s_to));
     }
     if (std::isnan(from) || std::isnan(to)) return ends_inside(ring, std::isnan(from));
     const double begin = std::max(from, asked_.r_low), end = std::min(to, asked_.r_high);
     if (!(end > begin)) return SheetPass{};
     const auto curve = sample_curve([this](double r) { return on_sheet(r); }, begin, end, o_.chord_mm, longest());
-    if (!curve) return fail("the ball-centre surface cannot be followed between radii {:.4f} and {:.4f}", from, to);
+    if (!curve) {
+      const auto [low, high] = ring.told(from, to);
+      return fail("the ball-centre surface cannot be followed between {} {:.4f} and {:.4f} mm", ring.along, low, high);
+    }
     SheetPass out{{curve->points, asked_.plus == o_.climb}, curve->worst_chord_mm};
     add_run_outs(out.pass, from, to, begin == from, end == to);
     if (!out.pass.outward) std::reverse(out.pass.points.begin(), out.pass.points.end());
@@ -45,28 +48,30 @@ class PassMaker {
   [[nodiscard]] double longest() const { return 4.0 * o_.ball_radius_mm; }
 
   [[nodiscard]] Diagnostic ends_inside(const tooth_space::Outline& ring, bool at_inner_end) const {
-    const double least = contact_radius(asked_.sigma(sheet_.r_from()), sheet_.r_from()),
-                 most = contact_radius(asked_.sigma(sheet_.r_to()), sheet_.r_to());
+    const double least = contact_at(asked_.sigma(sheet_.r_from()), sheet_.r_from()),
+                 most = contact_at(asked_.sigma(sheet_.r_to()), sheet_.r_to());
+    const auto [low, high] = ring.told(least, most);
+    const auto [from, to] = ring.told(ring.s_from, ring.s_to);
     return fail(
-        "the flank ends inside the ring (undercut): a ball of radius {:.4f} mm touches it at radii {:.4f} to "
+        "the flank ends inside the ring (undercut): a ball of radius {:.4f} mm touches it at {} {:.4f} to "
         "{:.4f} mm, the ring is {:.4f} to {:.4f} mm; {:.3g} mm are missing at its {} end",
-        o_.ball_radius_mm, least, most, ring.s_from, ring.s_to, at_inner_end ? least - ring.s_from : ring.s_to - most,
-        at_inner_end ? ring.from : ring.to);
+        o_.ball_radius_mm, ring.along, low, high, from, to,
+        at_inner_end ? least - ring.s_from : ring.s_to - most, at_inner_end ? ring.from : ring.to);
   }
 
-  [[nodiscard]] double contact_radius(double sigma, double r) const {
+  [[nodiscard]] double along(const Vec3& p) const { return sheet_.space().outline().chart.along(p); }
+  [[nodiscard]] double contact_at(double sigma, double r) const {
     const auto s = sheet_.at(sigma, r);
-    return s ? radius(s->contact.p) : NAN;
+    return s ? along(s->contact.p) : NAN;
   }
 
-  /// Radius of the ball centre where the contact of a curve lies at the radius `target`; not a number where it never
-  /// does.
-  [[nodiscard]] double radius_of_contact_at(const std::function<double(double)>& curve, double target) const {
+  /// s of the ball centre where the contact of a curve lies at `target`; not a number where it never does.
+  [[nodiscard]] double station_of_contact(const std::function<double(double)>& curve, double target) const {
     double a = sheet_.r_from(), b = sheet_.r_to();
-    if (contact_radius(curve(a), a) > target || contact_radius(curve(b), b) < target) return NAN;
+    if (contact_at(curve(a), a) > target || contact_at(curve(b), b) < target) return NAN;
     for (int k = 0; k < 60 && b - a > 1e-9; ++k) {
       const double m = 0.5 * (a + b);
-      (contact_radius(curve(m), m) < target ? a : b) = m;
+      (contact_at(curve(m), m) < target ? a : b) = m;
     }
     return 0.5 * (a + b);
   }
@@ -93,7 +98,7 @@ class PassMaker {
     const auto a = on_sheet(end), b = on_sheet(end - sense * 1e-4);
     if (!a || !b) return out;
     const Vec3 tangent = (a->centre - b->centre).normalized();
-    const double rate = std::abs(radius(a->centre + tangent * 1e-3) - radius(a->centre)) / 1e-3;
+    const double rate = std::abs(along(a->centre + tangent * 1e-3) - along(a->centre)) / 1e-3;
     out.push_back({a->centre + tangent * (o_.run_out_mm / std::max(rate, 0.2)), a->contact, false});
     return out;
   }

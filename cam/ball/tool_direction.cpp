@@ -50,7 +50,8 @@ class Search {
         few_(some_centres(passes, 24)),
         many_(some_centres(passes, 400)),
         frame_(pitch_frame(part, zone)),
-        beside_ring_(part.zones() > 1) {
+        beside_ring_(part.zones() > 1),
+        upright_first_(beside_ring_ && part.part().chart().sine == 0) {
     if (beside_ring_ || tool.half_angle_rad > 0) flute_ = flute_body(tool);
     choice_.zone = zone;
     choice_.fixed = false;
@@ -58,7 +59,7 @@ class Search {
 
   proof::DirectionChoice run() {
     // Beside another ring of teeth an axis that leans may bring the flute into it, an upright one never does.
-    if (beside_ring_ && frame_.up.z() < 1 - 1e-9)
+    if (upright_first_ && frame_.up.z() < 1 - 1e-9)
       try_one({std::acos(frame_.up.z()), frame_.outwards.z() > 0 ? 0 : kPi});
     try_one({0, 0});
     // A job whose upright tool is clear needs no more of the map than its neighbourhood.
@@ -264,7 +265,8 @@ class Search {
   const DirectionOptions& o_;
   std::vector<Vec3> few_, many_;
   PitchFrame frame_;
-  bool beside_ring_;                    ///< a double helical gear: another ring of teeth stands across the groove
+  bool beside_ring_;    ///< a double helical gear: another ring of teeth stands across the groove,
+  bool upright_first_;  ///< which an axis along that of the gear does not meet
   std::optional<tool::Frustum> flute_;  ///< asked for then, and where it is a cone
   proof::DirectionChoice choice_;
 };
@@ -272,12 +274,12 @@ class Search {
 }  // namespace
 
 PitchFrame pitch_frame(const analytic::GearDistance& part, int zone) {
-  const auto& space = part.space(zone);
-  const auto& ring = space.ring().zone;
-  const double azimuth = part.space_azimuth(zone, 0.5 * (ring.inner_radius_mm + ring.outer_radius_mm));
+  const tooth_space::Outline& ring = part.space(zone).outline();
+  const double azimuth = part.space_azimuth(zone, 0.5 * (ring.s_from + ring.s_to));
+  const Vec3 normal = ring.pitch_normal.value_or(ring.chart.up_at(0));
   PitchFrame frame;
-  frame.up = turned(Vec3(-space.surface().d()), space.surface().Cg == 0 ? 0.0 : azimuth);
-  frame.side = frame.up.cross(Vec3(std::cos(azimuth), std::sin(azimuth), 0)).normalized();
+  frame.up = turned(normal, normal.head<2>().isZero(0) ? 0.0 : azimuth);
+  frame.side = frame.up.cross(ring.chart.along_at(azimuth)).normalized();
   frame.outwards = frame.side.cross(frame.up);
   return frame;
 }

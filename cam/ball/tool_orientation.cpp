@@ -102,12 +102,12 @@ class Orienter {
     for (int k = 0; k <= count; ++k) at.push_back(length * k / count);
     return make_way(track, at);
   }
-  static OrientationWay make_way(const PassTrack& track, const std::vector<double>& at) {
+  [[nodiscard]] OrientationWay make_way(const PassTrack& track, const std::vector<double>& at) const {
     OrientationWay way;
     for (const double s : at) {
       way.s.push_back(s);
       way.points.push_back(track.point(way.s.back()));
-      way.r.push_back(radius(way.points.back().centre));
+      way.r.push_back(part_.part().chart().along(way.points.back().centre));
       way.lean.emplace_back(0, 0);
     }
     return way;
@@ -524,8 +524,13 @@ double OrientationCheck::flute_cut(const BallPass::Point& point, const Vec3& axi
 
 bool OrientationCheck::flute_is_free(const BallPass::Point& point, const Vec3& axis, double angle_rad) const {
   const double R = tool_.radius_mm(), top = tool_.flute_length_mm - R;
+  const tooth_space::Chart& chart = part_.part().chart();
   for (double h = std::min(0.4 * R, top); h > 0; h = h < top ? std::min(h + R, top) : -1) {
-    if (point.centre.z() + h * (axis.z() - angle_rad) - R > part_.gear().blank_top()) break;
+    // Above the part, and rising from there on.
+    const Vec3 at = point.centre + h * axis;
+    if (chart.up(at) - h * angle_rad - R > part_.part().blank_top() &&
+        (chart.sine == 0 || chart.up(at, axis) >= angle_rad))
+      break;
     if (flute_cut(point, axis, h) + h * angle_rad > 0) return false;
   }
   return true;

@@ -39,13 +39,13 @@ class Meter {
         const std::vector<path::MillingOperation>& operations, const std::vector<tool::ProofTool>& tools,
         const CutSurfaceOptions& options)
       : part_(part), operations_(operations), o_(options) {
-    if (o_.cap_mm <= 0) o_.cap_mm = part.gear().parameters().module_mm;
+    if (o_.cap_mm <= 0) o_.cap_mm = part.part().module_mm();
     for (std::size_t n = 0; n < operations.size(); ++n) {
       std::vector<path::ToolMotion> cuts;
       for (const auto& m : motions)
         if (m.operation == int(n) && m.tooth == 0) cuts.push_back(m);
       const tool::ProofTool& tool = tools[std::size_t(operations[n].tool)];
-      paths_.push_back(std::make_unique<Removed>(std::move(cuts), tool, part.gear().blank_top()));
+      paths_.push_back(std::make_unique<Removed>(std::move(cuts), tool, part.part().highest_z()));
       balls_.push_back(ball_of(tool));
     }
     if (operations.empty()) return;

@@ -135,6 +135,7 @@ class OverloadAlong {
       : motions_(motions),
         asked_(asked),
         in_blank_(q.in_blank),
+        chart_(q.chart),
         rings_(rings_of(q.mill.cutting(), kLoadRings)),
         radius_(q.mill.cutting().largest_radius()),
         stock_(motions, q) {
@@ -207,8 +208,9 @@ class OverloadAlong {
   }
   /// So far below all that is free, the outside of the blank too.
   [[nodiscard]] bool lies_below(const Vec3& p, double depth_mm, std::size_t done) const {
-    const Vec3 out = Vec3(p.x(), p.y(), 0).normalized();
-    return in_blank_(p + depth_mm * Vec3::UnitZ()) && in_blank_(p + depth_mm * out) && in_blank_(p - depth_mm * out) &&
+    const double at = azimuth(p);
+    const Vec3 up = chart_.up_at(at), along = chart_.along_at(at);
+    return in_blank_(p + depth_mm * up) && in_blank_(p + depth_mm * along) && in_blank_(p - depth_mm * along) &&
            stock_.stands(p, done, depth_mm);
   }
 
@@ -221,6 +223,7 @@ class OverloadAlong {
   const std::vector<path::ToolMotion>& motions_;
   const AskedLoad& asked_;
   const std::function<bool(const Vec3&)>& in_blank_;
+  tooth_space::Chart chart_;
   std::vector<PointRing> rings_;
   double radius_;
   Stock stock_;

@@ -7,6 +7,7 @@
 
 #include "cam/cut/swept_tool.h"
 #include "cam/tool/profile.h"
+#include "geometry/tooth_space/tooth_space.h"
 
 namespace toothpath::cut {
 
@@ -27,6 +28,7 @@ struct EngagementQuery {
   std::function<bool(const Vec3&)> in_blank;         ///< does the uncut blank hold this place?
   double top_mm = 0;                                 ///< z above which it never does
   std::size_t one_of = 1;                            ///< so many motions is measured; the others have zeros
+  tooth_space::Chart chart = {};                     ///< of the part
 };
 
 /// Stock thinner than this is none, mm.

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "cam/ball/tool_direction.h"
-#include "geometry/face_gear/surface.h"
 
 namespace toothpath::plan {
 namespace {
@@ -14,8 +13,8 @@ namespace {
 constexpr double kKeySpacing = 0.05;  // mm of radius, at least, between two keys
 
 /// Keys of one pass, in the space behind flank +1 of tooth 0; `aside` is added to their lean to the side.
-std::vector<path::ToolAxisKey> keys_of(const line::LinePass& pass, const ball::PitchFrame& frame, double turn,
-                                       double aside) {
+std::vector<path::ToolAxisKey> keys_of(const line::LinePass& pass, const tooth_space::Outline& ring,
+                                       const ball::PitchFrame& frame, double turn, double aside) {
   std::vector<path::ToolAxisKey> keys;
   for (const line::LineRecord& record : pass.records) {
     // A pose that is lifted lies on the axis of one that is not, farther out or in: not at its own radius.
@@ -23,7 +22,7 @@ std::vector<path::ToolAxisKey> keys_of(const line::LinePass& pass, const ball::P
     const Vec3 a = turned(record.axis.a, turn);
     const double up = a.dot(frame.up);
     keys.push_back(
-        {radius(record.axis.c_0), std::atan(a.dot(frame.outwards) / up), std::atan(a.dot(frame.side) / up) + aside});
+        {ring.sign * ring.chart.along(record.axis.c_0), std::atan(a.dot(frame.outwards) / up), std::atan(a.dot(frame.side) / up) + aside});
   }
   std::stable_sort(keys.begin(), keys.end(), [](const auto& a, const auto& b) { return a.radius_mm < b.radius_mm; });
   std::vector<path::ToolAxisKey> apart;
@@ -39,13 +38,14 @@ ball::Leading beside_side(const analytic::GearDistance& part, const line::LinePl
   out.words = fmt::format("beside the poses of operation {}", operation);
   for (int zone = 0; zone < part.zones(); ++zone) {
     const ball::PitchFrame frame = ball::pitch_frame(part, zone);
+    const tooth_space::Outline& ring = part.space(zone).outline();
     auto& trials = out.zones.emplace_back();
     for (const double off : kOffFlank) {
       ball::LedAxes led;
       for (const line::LinePass& pass : side.passes) {
         if (pass.zone != zone || pass.strip != side.strips - 1) continue;
-        if (pass.side > 0) led.plus = keys_of(pass, frame, 0, off);
-        else led.minus = keys_of(pass, frame, part.gear().pitch(), -off);
+        if (pass.side > 0) led.plus = keys_of(pass, ring, frame, 0, off);
+        else led.minus = keys_of(pass, ring, frame, part.part().pitch(), -off);
       }
       if (!led.plus.empty() && !led.minus.empty()) trials.push_back(std::move(led));
     }

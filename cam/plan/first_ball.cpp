@@ -9,22 +9,22 @@ namespace {
 constexpr double kFound = 5e-4;  // mm of radius, and of the bottom's height
 
 /// Height of the bottom of a space in its middle: below it the part is solid.
-double bottom_of(const analytic::GearDistance& part, int zone, double r, double azimuth) {
-  double high = part.space(zone).surface().z_tip(r), low = part.gear().lowest_root() - kFound;
+double bottom_of(const analytic::GearDistance& part, int zone, double s, double azimuth) {
+  double high = part.space(zone).tip(s), low = part.part().lowest_root() - kFound;
   while (high - low > kFound) {
-    const double z = 0.5 * (low + high);
-    (part.nearest({r * std::cos(azimuth), r * std::sin(azimuth), z}, kFound).distance > 0 ? high : low) = z;
+    const double h = 0.5 * (low + high);
+    (part.nearest(part.part().chart().place(s, azimuth, h), kFound).distance > 0 ? high : low) = h;
   }
   return high;
 }
 
-double largest_radius_at(const analytic::GearDistance& part, int zone, double r, double allowance, double reach) {
-  const double azimuth = part.space_azimuth(zone, r),
-               half = 0.5 * (part.space(zone).surface().z_tip(r) + bottom_of(part, zone, r, azimuth));
+double largest_radius_at(const analytic::GearDistance& part, int zone, double s, double allowance, double reach) {
+  const double azimuth = part.space_azimuth(zone, s),
+               half = 0.5 * (part.space(zone).tip(s) + bottom_of(part, zone, s, azimuth));
   double low = 0, high = reach - allowance;
   while (high - low > kFound) {
     const double R = 0.5 * (low + high);
-    const Vec3 centre(r * std::cos(azimuth), r * std::sin(azimuth), half + R);
+    const Vec3 centre = part.part().chart().place(s, azimuth, half + R);
     (part.nearest(centre, R + allowance).distance >= R + allowance ? low : high) = R;
   }
   return low;
@@ -35,12 +35,10 @@ double largest_radius_at(const analytic::GearDistance& part, int zone, double r,
 double first_ball_mm(const analytic::GearDistance& part, double allowance_mm, double reach_mm) {
   double least = INFINITY;
   for (int zone = 0; zone < part.zones(); ++zone) {
-    const auto& ring = part.space(zone).ring().zone;
+    const auto& ring = part.space(zone).outline();
     for (const double share : {0.0, 0.5, 1.0})
-      least = std::min(
-          least,
-          largest_radius_at(part, zone, ring.inner_radius_mm + share * (ring.outer_radius_mm - ring.inner_radius_mm),
-                            allowance_mm, reach_mm));
+      least = std::min(least, largest_radius_at(part, zone, ring.s_from + share * (ring.s_to - ring.s_from),
+                                                allowance_mm, reach_mm));
   }
   return 2 * least;
 }

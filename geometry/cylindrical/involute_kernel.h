@@ -131,6 +131,8 @@ struct InvoluteKernel {
     out.s_to = -z_from;
     out.from = "upper";
     out.to = "lower";
+    out.along = "z";
+    out.sign = -1;
     return out;
   }
   [[nodiscard]] tooth_space::Borders borders(Piece piece) const {

@@ -50,6 +50,7 @@ SpaceSheet::SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring)
   outline_.pitch = ring.surface.pitch;
   outline_.s_from = ring.zone.inner_radius_mm;
   outline_.s_to = ring.zone.outer_radius_mm;
+  outline_.pitch_normal = -ring.surface.d();
   // Corrected pieces share their normals to 1e-5 only; a foot so little beyond is about 1e-6 mm wrong.
   if (ring_.displaced()) outline_.join = kDisplacedJoin;
   if (!ring_.displaced()) return;

@@ -4,7 +4,10 @@
 // A gear type comes in by one kernel (kernel_space.h) or, where it has closed forms, by its own class.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <utility>
 
 #include "geometry/base/vec.h"
 #include "geometry/tooth_space/enclosure.h"
@@ -24,6 +27,15 @@ struct Chart {
   /// Radius and height of a place.
   [[nodiscard]] double r(double s, double h) const { return cosine * s + sine * h; }
   [[nodiscard]] double z(double s, double h) const { return cosine * h - sine * s; }
+  [[nodiscard]] Vec3 place(double s, double azimuth, double h) const {
+    const double r = this->r(s, h);
+    return {r * std::cos(azimuth), r * std::sin(azimuth), z(s, h)};
+  }
+  /// Unit vectors along the teeth and out of the body, in the meridian plane at an azimuth.
+  [[nodiscard]] Vec3 along_at(double azimuth) const {
+    return {cosine * std::cos(azimuth), cosine * std::sin(azimuth), -sine};
+  }
+  [[nodiscard]] Vec3 up_at(double azimuth) const { return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}; }
 
  private:
   static double outwards(const Vec3& p, const Vec3& d) { return (p.x() * d.x() + p.y() * d.y()) / radius(p); }
@@ -64,8 +76,14 @@ struct Outline {
   double s_from = 0, s_to = 0;                ///< ends of the ring
   const char *from = "inner", *to = "outer";  ///< and their names
   const char* along = "radius";               ///< what s is called in messages,
-  double told = 1;                            ///< and its sign there: s = -z is told as z
+  double sign = 1;                            ///< and its sign there: s = -z is told as z
+  std::optional<Vec3> pitch_normal = {};      ///< of the pitch surface, out of the body, at azimuth 0; none: up
   double join = 1e-9;  ///< a foot this far beyond the border of its piece (in u) still counts: how well pieces join
+
+  /// Two values of s as messages tell them, in rising order.
+  [[nodiscard]] std::pair<double, double> told(double a, double b) const {
+    return {std::min(sign * a, sign * b), std::max(sign * a, sign * b)};
+  }
 };
 
 /// A solved place next to the one that is asked for.

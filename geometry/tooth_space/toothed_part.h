@@ -2,6 +2,7 @@
 // the blank that they are cut from.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,8 +14,8 @@
 
 namespace toothpath::tooth_space {
 
-/// Asked from several threads. All zones share one chart direction and one number of teeth; they follow each other with
-/// rising s. Lengths in mm; heights are h of the chart.
+/// Asked from several threads. All zones share one chart and one number of teeth, and none overlaps another along s.
+/// Their order is that of the job. Lengths in mm; heights are h of the chart.
 class ToothedPart {
  public:
   virtual ~ToothedPart() = default;
@@ -46,6 +47,21 @@ class ToothedPart {
   [[nodiscard]] virtual std::optional<OtherBegin> begun_later(int /*zone*/, double /*share*/) const { return {}; }
 
   [[nodiscard]] double pitch() const { return kTwoPi / teeth(); }
+  /// Stretch of s between two zones; nothing where there is one zone.
+  struct Stretch {
+    double from = 0, to = 0;
+  };
+  [[nodiscard]] std::optional<Stretch> groove() const {
+    if (zones() < 2) return {};
+    const Outline &a = space(0).outline(), &b = space(1).outline();
+    return a.s_to < b.s_from ? Stretch{a.s_to, b.s_from} : Stretch{b.s_to, a.s_from};
+  }
+  /// Highest z of the uncut blank between the ends of its zones.
+  [[nodiscard]] double highest_z() const {
+    double s = space(0).outline().s_from;
+    for (int zone = 1; zone < zones(); ++zone) s = std::min(s, space(zone).outline().s_from);
+    return chart().z(s, blank_top());
+  }
   [[nodiscard]] const Chart& chart() const { return space(0).outline().chart; }
 
  protected:

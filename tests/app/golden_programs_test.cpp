@@ -11,13 +11,15 @@
 
 #include "app/job/file.h"
 #include "app/process/bevel/files.h"
-#include "app/process/face/proof.h"
+#include "app/process/face/body.h"
 #include "app/process/face/shaper_setup.h"
 #include "app/process/gear_of_job.h"
 #include "app/process/proof_limits.h"
+#include "cam/analytic/gouge_check.h"
 #include "cam/finger/check.h"
 #include "cam/finger/milling.h"
-#include "cam/plan/face_gear.h"
+#include "cam/plan/milling.h"
+#include "geometry/face_gear/part.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/readback/conditions.h"
 #include "postproc/readback/program_hash.h"
@@ -99,11 +101,11 @@ Planned plan_face(const job::Job& job) {
   auto made = process::make_face_gear(job);
   if (const auto* errors = made.refused()) return out.error = errors->front().text(), out;
   const face_gear::FaceGear& gear = made.value();
-  const analytic::GearDistance part(gear, ball::reach_of(job.tools));
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of(job.tools));
   const proof::ProofLimits limits = process::proof_limits(job, 1);
   plan::Options options;
   options.limits = limits;
-  auto planned = plan::plan_face_gear(part, job.tools, job.operations, options);
+  auto planned = plan::plan_milling(part, job.tools, job.operations, options);
   if (const auto* refusal = planned.refused()) return out.error = refusal->diagnostic.message, out;
   out.paths = planned.value().paths;
   const analytic::GougeCheck gouge(part, job.tools, {limits, gear.blank_top()});
@@ -112,7 +114,7 @@ Planned plan_face(const job::Job& job) {
     if (!passed) return out.error = passed.error().message, out;
     out.checked.push_back(std::move(*passed));
   }
-  out.body = face::clearance_body(gear);
+  out.body = face::body_of(gear).links;
   out.teeth = gear.parameters().teeth;
   return out;
 }

@@ -8,8 +8,9 @@
 #include "app/process/proof_limits.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/cut/swept_tool.h"
-#include "cam/plan/face_gear.h"
+#include "cam/plan/milling.h"
 #include "cam/tool/cutters.h"
+#include "geometry/face_gear/part.h"
 
 namespace toothpath {
 namespace {
@@ -97,11 +98,11 @@ void expect_links_in_air(const std::string& file, const std::vector<std::size_t>
   }
   auto made = process::make_face_gear(job);
   ASSERT_FALSE(made.refused());
-  const analytic::GearDistance part(made.value(), ball::reach_of(job.tools));
+  const analytic::GearDistance part(face_gear::part_of(made.value()), ball::reach_of(job.tools));
   plan::Options options;
   options.limits = process::proof_limits(job, 1);
   options.link_feed_mm_min = 6000;
-  const auto plan = plan::plan_face_gear(part, job.tools, job.operations, options);
+  const auto plan = plan::plan_milling(part, job.tools, job.operations, options);
   ASSERT_TRUE(plan.has_value()) << plan.refused()->diagnostic.message;
   Stock stock{made.value(), {}};
   std::size_t fast = 0;

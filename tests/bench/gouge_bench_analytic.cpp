@@ -8,6 +8,7 @@
 #include "cam/analytic/body_tree.h"
 #include "cam/analytic/gouge_check.h"
 #include "geometry/base/angle.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/mesh/tooth_mesh.h"
 #include "tests/bench/gouge_bench_cgal.h"
 #include "tests/bench/thread_seconds.h"
@@ -54,7 +55,7 @@ Answer exact(const analytic::GearDistance& part, const analytic::BodyTree& tree,
   for (double h = 0; h <= top;) {
     const double d = part.nearest(pose.centre + h * pose.axis, R + kAnalyticWithin).distance - R;
     a.cutter = std::min(a.cutter, d);
-    if ((pose.centre + h * pose.axis).z() - R > part.gear().blank_top()) break;
+    if ((pose.centre + h * pose.axis).z() - R > part.part().blank_top()) break;
     h += std::max(d - a.cutter, 0.0) + kMarch;
   }
   for (const auto& body : tool::shank_and_holder(tool))
@@ -96,7 +97,7 @@ double proven(const analytic::GearDistance& part, const tool::ToolAssembly& tool
 void analytic_rows() {
   const face_gear::FaceGear gear = test::made(test::quarter_dhfg());
   const tool::ToolAssembly tool = test::ball_mill(0.5, 3.2, 0.46, 14, 10);
-  const analytic::GearDistance part(gear, 1.0);
+  const analytic::GearDistance part(face_gear::part_of(gear), 1.0);
   const analytic::BodyTree bodies(part);
   const auto poses = poses_of(gear, part, tool);
   std::printf(

@@ -13,7 +13,8 @@
 #include <utility>
 
 #include "cam/analytic/gouge_check.h"
-#include "cam/plan/face_gear.h"
+#include "cam/plan/milling.h"
+#include "geometry/face_gear/part.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/sample_tools.h"
 #include "tests/support/threads.h"
@@ -91,12 +92,12 @@ std::vector<path::ClRecord> row(const Case& c, int threads) {
   const face_gear::FaceGear gear = test::made(c.gear);
   Clock clock;
   std::unique_ptr<analytic::GearDistance> part;
-  clock.run("distance index", [&] { part = std::make_unique<analytic::GearDistance>(gear, ball::reach_of(c.tools)); });
+  clock.run("distance index", [&] { part = std::make_unique<analytic::GearDistance>(face_gear::part_of(gear), ball::reach_of(c.tools)); });
   plan::Options options;
   options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
-  plan::FaceGearPlan plan;
+  plan::MillingPlan plan;
   clock.run("rest", [&] {
-    auto planned = plan::plan_face_gear(*part, c.tools, c.operations, options);
+    auto planned = plan::plan_milling(*part, c.tools, c.operations, options);
     if (const auto* refusal = planned.refused()) {
       std::fprintf(stderr, "%s: %s\n", c.name, refusal->diagnostic.message.c_str());
       std::exit(1);

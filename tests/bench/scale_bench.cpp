@@ -12,7 +12,8 @@
 #include <variant>
 
 #include "cam/analytic/gouge_check.h"
-#include "cam/plan/face_gear.h"
+#include "cam/plan/milling.h"
+#include "geometry/face_gear/part.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/sample_tools.h"
 
@@ -39,7 +40,7 @@ double peak_megabytes() {
 struct Planned {
   face_gear::FaceGear gear;
   std::vector<tool::ToolAssembly> tools{mill()};
-  analytic::GearDistance part{gear, ball::reach_of(tools)};
+  analytic::GearDistance part{face_gear::part_of(gear), ball::reach_of(tools)};
   path::ClPath path;
 };
 
@@ -47,7 +48,7 @@ struct Planned {
 /// is not reached.
 std::unique_ptr<Planned> plan(int teeth, std::size_t records) {
   auto job = std::make_unique<Planned>(
-      Planned{test::made(spur(teeth)), {mill()}, analytic::GearDistance(test::made(spur(teeth)), 1.3), {}});
+      Planned{test::made(spur(teeth)), {mill()}, analytic::GearDistance(face_gear::part_of(test::made(spur(teeth))), 1.3), {}});
   path::MillingOperation op;
   op.type = path::OperationType::finishing;
   op.speed_rpm = 20000;
@@ -57,7 +58,7 @@ std::unique_ptr<Planned> plan(int teeth, std::size_t records) {
   for (int round = 0; round < 4; ++round) {
     op.scallop_mm = 0.01 * share;
     op.chord_tolerance_mm = 5e-4 * share;
-    auto planned = plan::plan_face_gear(job->part, job->tools, {op}, {});
+    auto planned = plan::plan_milling(job->part, job->tools, {op}, {});
     if (auto* refusal = planned.refused()) {
       std::fprintf(stderr, "%s\n", refusal->diagnostic.message.c_str());
       std::exit(1);

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cam/plan/face_gear.h"
+#include "cam/plan/milling.h"
 #include "geometry/base/angle.h"
 #include "geometry/contact/tooth_contact.h"
+#include "geometry/face_gear/part.h"
 
 namespace toothpath::trials {
 namespace {
@@ -88,10 +89,10 @@ MillingTime mill(const DhfgStudy& study, const face_gear::FaceGear& gear) {
     time.refusal = "no operation";
     return time;
   }
-  const analytic::GearDistance part(gear, ball::reach_of(study.tools));
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of(study.tools));
   plan::Options options;
   options.limits.gouge_mm = 1.0;  // paths are timed, not cut: coarse chords are no refusal
-  const auto planned = plan::plan_face_gear(part, study.tools, study.operations, options);
+  const auto planned = plan::plan_milling(part, study.tools, study.operations, options);
   if (const auto* refusal = planned.refused()) {
     time.refusal = refusal->key + ": " + refusal->diagnostic.message;
     return time;

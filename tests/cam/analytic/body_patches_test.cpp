@@ -3,6 +3,7 @@
 #include "cam/analytic/body_patches.h"
 
 #include "cam/analytic/gear_distance.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/brute_force_gear_solid.h"
 
@@ -50,7 +51,7 @@ TEST(Interval, IsNarrowOnNarrowArguments) {
 class Patches : public testing::TestWithParam<std::string> {
  protected:
   face_gear::FaceGear gear = test::made(test::gear_named(GetParam()));
-  analytic::GearDistance part{gear, 1.0};
+  analytic::GearDistance part{face_gear::part_of(gear), 1.0};
 };
 
 TEST_P(Patches, NothingRestsOnSampling) { EXPECT_EQ(part.unproven(), 0U); }
@@ -72,7 +73,7 @@ face_gear::FaceGearParameters modified_gear(const std::string& name) {
 class ModifiedPatches : public testing::TestWithParam<std::string> {
  protected:
   face_gear::FaceGear gear = test::made(modified_gear(GetParam()));
-  analytic::GearDistance part{gear, 1.0};
+  analytic::GearDistance part{face_gear::part_of(gear), 1.0};
 };
 
 TEST_P(ModifiedPatches, NothingRestsOnSampling) { EXPECT_EQ(part.unproven(), 0U); }

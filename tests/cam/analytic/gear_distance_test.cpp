@@ -1,8 +1,10 @@
 // The distance to the finished gear against dense sampling of its exact surfaces.
 #include "cam/analytic/gear_distance.h"
 
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/brute_force_gear_solid.h"
+#include "tests/support/face_part.h"
 
 namespace toothpath {
 namespace {
@@ -13,7 +15,7 @@ class Distance : public testing::TestWithParam<std::string> {
  protected:
   face_gear::FaceGear gear = test::made(test::gear_named(GetParam()));
   double reach = 0.9 * gear.parameters().module_mm;
-  analytic::GearDistance part{gear, reach};
+  analytic::GearDistance part{face_gear::part_of(gear), reach};
   BruteForceGearSolid brute{gear};
 };
 
@@ -116,7 +118,7 @@ TEST_P(Distance, FacetsKeepBelowTheTruth) {
     EXPECT_LE(keeps, std::abs(truth.distance) + 2e-7) << c.transpose() << " " << truth.patch;
     // Quads go on beyond ends and tips, by less than a cell: away from there, in a space, only the sag is lost.
     const double beside = std::min(r - gear.inner_radius(), gear.outer_radius() - r);
-    const double tip = part.space(0).surface().z_tip(std::clamp(r, gear.inner_radius(), gear.outer_radius()));
+    const double tip = test::sheet_of(part.space(0)).surface().z_tip(std::clamp(r, gear.inner_radius(), gear.outer_radius()));
     if (part.zones() > 1 || truth.distance < 0 || truth.distance >= within || beside < 0.5 + truth.distance) continue;
     if (c.z() > tip - 0.5 - truth.distance) continue;
     ++near;
@@ -222,7 +224,7 @@ TEST(DistanceOnACone, ShortLooksTellAirFromMaterial) {
   p.reference_radius_mm = 54.81;
   p.zones = {{0, 54.81, 56.07}};
   const auto gear = test::made(p);
-  const analytic::GearDistance part(gear, 1.25);
+  const analytic::GearDistance part(face_gear::part_of(gear), 1.25);
   test::Random random(23);
   int free = 0, inside = 0;
   for (int k = 0; k < 6000; ++k) {

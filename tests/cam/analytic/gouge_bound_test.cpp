@@ -6,6 +6,7 @@
 #include "cam/path/motion_blend.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/brute_force_bodies.h"
+#include "tests/support/face_part.h"
 
 namespace toothpath {
 namespace {
@@ -16,7 +17,7 @@ using test::PlannedJob;
 /// One pass along the space of a gear, the ball in contact, with its approach from above.
 std::optional<path::ClPath> one_pass(const PlannedJob& job, test::Random& random, double R, double above) {
   const int zone = int(random.index(std::size_t(job.part->zones())));
-  const auto& ring = job.part->space(zone).ring().zone;
+  const auto& ring = test::sheet_of(job.part->space(zone)).ring().zone;
   const double length = ring.outer_radius_mm - ring.inner_radius_mm;
   const double from = ring.inner_radius_mm + random(0.1, 0.5) * length, to = from + random(0.05, 0.3) * length;
   const tooth_space::OffsetSheet sheet(job.part->space(zone), R + above, from - 0.2, to + 0.2, 9);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "cam/analytic/gear_distance.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/mesh/tooth_mesh.h"
 #include "tests/support/random.h"
 #include "tests/support/sample_gears.h"
@@ -27,7 +28,7 @@ float single_distance(const Eigen::Vector3f& c, const Eigen::Vector3f& a, const 
 /// The same question put to float32 facets alone, as a mesh-based check puts it: gouges of 1 um pass for clean.
 TEST(Proof, SinglePrecisionFacetsWouldMissAMicrometre) {
   const face_gear::FaceGear gear = made(quarter_dhfg());
-  const analytic::GearDistance part(gear, 1.0);
+  const analytic::GearDistance part(face_gear::part_of(gear), 1.0);
   const auto pitch = mesh::mesh_tooth_space(gear, 0.01);
   ASSERT_TRUE(pitch);
   std::vector<Eigen::Vector3f> v;
@@ -61,7 +62,7 @@ TEST(Proof, SinglePrecisionFacetsWouldMissAMicrometre) {
 /// no sag of facets is left, only the arithmetic at 300 mm.
 TEST(SinglePrecision, MissesAGougeAtThreeHundredMillimetres) {
   const face_gear::FaceGear gear = made(transverse_gear(200, 30, 3, 0.9, {{0, 304, 318}}));
-  const analytic::GearDistance part(gear, 1.5);
+  const analytic::GearDistance part(face_gear::part_of(gear), 1.5);
   const double R = 0.8, limit = 0.002;
   Random random(8);
   int planted = 0, missed = 0, found = 0;

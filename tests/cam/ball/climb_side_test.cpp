@@ -1,6 +1,7 @@
 // On which side of the feed the material lies: to the right, seen from the holder, when climbing; to the left
 // otherwise. No pass turns back.
 #include "cam/ball/finishing.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
 namespace toothpath {
@@ -15,7 +16,7 @@ struct Sides {
 /// A tool along the gear axis.
 Sides sides_of(const face_gear::FaceGearParameters& gear, double ball, double scallop, double allowance, bool climb) {
   const face_gear::FaceGear made = test::made(gear);
-  const analytic::GearDistance part(made, 1.3 * ball + allowance + 0.6);
+  const analytic::GearDistance part(face_gear::part_of(made), 1.3 * ball + allowance + 0.6);
   Sides out;
   for (std::size_t z = 0; z < gear.zones.size(); ++z) {
     const auto& zone = gear.zones[z];

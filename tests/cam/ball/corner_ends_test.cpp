@@ -3,7 +3,9 @@
 #include "cam/ball/corner_ends.h"
 
 #include "cam/cut/cut_surface.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
+#include "tests/support/face_part.h"
 
 namespace toothpath {
 namespace {
@@ -39,7 +41,7 @@ ball::FinishingOptions options_of(const path::MillingOperation& op) {
   return o;
 }
 tooth_space::OffsetSheet sheet_of(const analytic::GearDistance& part, double ball) {
-  const auto& zone = part.space(0).ring().zone;
+  const auto& zone = test::sheet_of(part.space(0)).ring().zone;
   return tooth_space::OffsetSheet(part.space(0), ball, zone.inner_radius_mm - ball - 0.1,
                                   zone.outer_radius_mm + ball + 0.1);
 }
@@ -72,7 +74,7 @@ TEST(CornerEnds, NothingThatTheBallReachesStaysHigherThanTheCusp) {
 
 TEST(CornerEnds, TouchThePartAndEndInTheCorner) {
   const auto& job = leaning_job();
-  const auto& zone = job.part->space(0).ring().zone;
+  const auto& zone = test::sheet_of(job.part->space(0)).ring().zone;
   const auto sheet = sheet_of(*job.part, kBall);
   for (const auto& pass : ends_of(*job.part, sheet, options_of(job.operations[0]))) {
     int contacts = 0;
@@ -107,7 +109,7 @@ TEST(CornerEnds, ThereAreNoneWhereTheBallFitsOrBothWallsEndTogether) {
   EXPECT_TRUE(ends_of(*job.part, sheet_of(*job.part, 0.05), o).empty());
 
   const auto spur = test::made(test::small_spur());  // straight teeth, 90 deg: both contacts lie at one radius
-  const analytic::GearDistance part(spur, 1.5);
+  const analytic::GearDistance part(face_gear::part_of(spur), 1.5);
   const auto sheet = sheet_of(part, 0.8);
   ASSERT_TRUE(sheet.has_gaps());
   o.ball_radius_mm = 0.8;

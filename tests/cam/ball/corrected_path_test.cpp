@@ -3,6 +3,7 @@
 #include "cam/cut/cut_surface.h"
 #include "cam/cut/swept_path.h"
 #include "geometry/face_gear/flank_correction.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/inspection_points.h"
 
@@ -41,8 +42,8 @@ TEST(CorrectedPath, PlannedAndProvenAgainstTheCorrectedFlanksAndWrongForTheOther
   const std::vector<tool::ToolAssembly> tools = {ball_mill(1, 6, 0.95, 16, 10)};
   const std::vector<path::MillingOperation> operations = {finishing(0, 3e-4, 3e-4)};
   PlannedJob job{corrected(nominal), tools, operations, nullptr, {}};
-  job.part = std::make_unique<analytic::GearDistance>(job.gear, ball::reach_of(tools));
-  auto plan = plan::plan_face_gear(*job.part, tools, operations, {});
+  job.part = std::make_unique<analytic::GearDistance>(face_gear::part_of(job.gear), ball::reach_of(tools));
+  auto plan = plan::plan_milling(*job.part, tools, operations, {});
   ASSERT_TRUE(plan.has_value()) << plan.error().diagnostic.message;
   job.plan = std::move(plan).value();
   const auto motions = job.motions();
@@ -51,7 +52,7 @@ TEST(CorrectedPath, PlannedAndProvenAgainstTheCorrectedFlanksAndWrongForTheOther
   const analytic::GougeCheck check(*job.part, tools, job.check_options());
   const auto own = check.check(motions, {0});
   EXPECT_LT(own.bound_mm, 0.002);
-  const analytic::GearDistance plain(nominal, ball::reach_of(tools));
+  const analytic::GearDistance plain(face_gear::part_of(nominal), ball::reach_of(tools));
   const auto other = analytic::GougeCheck(plain, tools, job.check_options()).check(motions, {0});
   EXPECT_GT(other.measured_mm, 0.012);
   EXPECT_LT(other.measured_mm, 0.030);

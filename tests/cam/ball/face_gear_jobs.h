@@ -8,8 +8,9 @@
 #include <memory>
 
 #include "cam/analytic/gouge_check.h"
-#include "cam/plan/face_gear.h"
+#include "cam/plan/milling.h"
 #include "geometry/base/angle.h"
+#include "geometry/face_gear/part.h"
 #include "tests/support/random.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/sample_tools.h"
@@ -62,7 +63,7 @@ struct PlannedJob {
   std::vector<tool::ToolAssembly> tools;
   std::vector<path::MillingOperation> operations;
   std::unique_ptr<analytic::GearDistance> part;
-  plan::FaceGearPlan plan;
+  plan::MillingPlan plan;
 
   [[nodiscard]] std::vector<path::ToolMotion> motions() const {
     std::vector<path::ToolMotion> all;
@@ -90,8 +91,8 @@ struct PlannedJob {
 inline PlannedJob planned(const face_gear::FaceGearParameters& p, std::vector<tool::ToolAssembly> tools,
                           std::vector<path::MillingOperation> operations) {
   PlannedJob job{made(p), std::move(tools), std::move(operations), nullptr, {}};
-  job.part = std::make_unique<analytic::GearDistance>(job.gear, ball::reach_of(job.tools));
-  auto plan = plan::plan_face_gear(*job.part, job.tools, job.operations, {});
+  job.part = std::make_unique<analytic::GearDistance>(face_gear::part_of(job.gear), ball::reach_of(job.tools));
+  auto plan = plan::plan_milling(*job.part, job.tools, job.operations, {});
   if (auto* refusal = plan.refused()) throw std::runtime_error(refusal->key + ": " + refusal->diagnostic.message);
   job.plan = std::move(plan).value();
   return job;

@@ -1,7 +1,9 @@
 // The largest first tool: it fits where it is said to, and nothing larger does.
 #include "cam/plan/first_ball.h"
 
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
+#include "tests/support/face_part.h"
 
 namespace toothpath {
 namespace {
@@ -10,7 +12,7 @@ TEST(FirstBall, FitsInTheUpperHalfAndNoLargerOneDoes) {
   for (const auto& name : test::gear_names()) {
     const face_gear::FaceGear gear = test::made(test::gear_named(name));
     const double m = gear.parameters().module_mm, allowance = 0.1 * m, reach = 4 * m;
-    const analytic::GearDistance part(gear, reach);
+    const analytic::GearDistance part(face_gear::part_of(gear), reach);
     const double D = plan::first_ball_mm(part, allowance, reach);
     std::printf("%s: %.3f modules\n", name.c_str(), D / m);
     ASSERT_GT(D, 0.5 * m) << name;
@@ -19,9 +21,9 @@ TEST(FirstBall, FitsInTheUpperHalfAndNoLargerOneDoes) {
     bool larger_fits = true;
     for (int zone = 0; zone < part.zones(); ++zone)
       for (const double share : {0.0, 0.5, 1.0}) {
-        const auto& ring = part.space(zone).ring().zone;
+        const auto& ring = test::sheet_of(part.space(zone)).ring().zone;
         const double r = ring.inner_radius_mm + share * (ring.outer_radius_mm - ring.inner_radius_mm),
-                     azimuth = part.space_azimuth(zone, r), top = part.space(zone).surface().z_tip(r);
+                     azimuth = part.space_azimuth(zone, r), top = test::sheet_of(part.space(zone)).surface().z_tip(r);
         const auto distance = [&](double z) {
           return part.nearest({r * std::cos(azimuth), r * std::sin(azimuth), z}, reach).distance;
         };

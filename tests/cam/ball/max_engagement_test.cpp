@@ -1,20 +1,21 @@
 // `max_engagement`: passes of a layer are drawn together until their teeth keep it; those that open a layer are slots.
 #include "cam/tool/cutters.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
 namespace toothpath {
 namespace {
 
 /// The most of what a track says of the teeth, and the step-over, of one roughing operation with this limit.
-Expected<plan::FaceGearPlan, ball::PlanRefusal> roughed(double most_deg) {
+Expected<plan::MillingPlan, ball::PlanRefusal> roughed(double most_deg) {
   auto parameters = test::small_spur();
   parameters.zones = {{0, 61, 62}};
   const face_gear::FaceGear gear = test::made(parameters);
   const auto tool = test::ball_mill(1, 6, 0.95, 16, 10);
-  const analytic::GearDistance part(gear, ball::reach_of({tool}));
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({tool}));
   auto op = test::roughing(0, 1.2, 0.6, 0.1);
   op.max_engagement_rad = radians(most_deg);
-  return plan::plan_face_gear(part, {tool}, {op}, {});
+  return plan::plan_milling(part, {tool}, {op}, {});
 }
 
 /// Greatest distance across the tooth from a pass to the nearest one before it in its layer, mm.

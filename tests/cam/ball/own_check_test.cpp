@@ -1,5 +1,6 @@
 // A plan passes its own check, or the planner says what keeps it from one, and what would help.
 #include "cam/analytic/body_sweep.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
 namespace toothpath {
@@ -68,8 +69,8 @@ ball::PlanRefusal refusal_of(std::vector<path::MillingOperation> operations) {
   parameters.zones.front().outer_radius_mm = 61;
   const auto gear = test::made(parameters);
   const std::vector tools = {test::ball_mill(1, 6, 0.95, 16, 10)};
-  const analytic::GearDistance part(gear, ball::reach_of(tools));
-  const auto plan = plan::plan_face_gear(part, tools, operations, {});
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of(tools));
+  const auto plan = plan::plan_milling(part, tools, operations, {});
   EXPECT_FALSE(plan.has_value());
   return plan.has_value() ? ball::PlanRefusal{} : *plan.refused();
 }

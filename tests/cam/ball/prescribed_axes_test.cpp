@@ -2,6 +2,7 @@
 // refusals against samples.
 #include "cam/ball/prescribed_axes.h"
 
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/brute_force_gear_solid.h"
 #include "tests/support/plain_frustum.h"
@@ -31,8 +32,8 @@ test::PlannedJob planned_with(const std::vector<path::ToolAxisKey>& plus, const 
 }
 ball::PlanRefusal refused_with(const face_gear::FaceGear& gear, const tool::ToolAssembly& tool,
                                const std::vector<path::ToolAxisKey>& keys) {
-  const analytic::GearDistance part(gear, ball::reach_of({tool}));
-  const auto plan = plan::plan_face_gear(part, {tool}, {with_axes(keys, keys)}, {});
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({tool}));
+  const auto plan = plan::plan_milling(part, {tool}, {with_axes(keys, keys)}, {});
   const auto* refusal = plan.refused();
   return refusal != nullptr ? *refusal : ball::PlanRefusal{};
 }
@@ -185,7 +186,7 @@ TEST(PrescribedAxes, RefusalsNameThePlaceTheBodyAndTheLimit) {
   EXPECT_EQ(outwards, 0);
   EXPECT_GT(aside, 5);
   const test::BruteForceGearSolid brute(gear);
-  const analytic::GearDistance part(gear, 1);
+  const analytic::GearDistance part(face_gear::part_of(gear), 1);
   const double a = part.space_azimuth(0, 61.5);
   const Vec3 outward(std::cos(a), std::sin(a), 0), side(-outward.y(), outward.x(), 0);
   const Vec3 axis = std::cos(radians(aside)) * Vec3::UnitZ() + std::sin(radians(aside)) * side,

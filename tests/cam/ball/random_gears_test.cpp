@@ -1,8 +1,10 @@
 // Any face gear that is accepted gets passes or a refusal that names its reason: random gears with a fixed seed, and
 // gears that were hard to begin on.
 #include "cam/ball/finishing.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/brute_force_face_gear.h"
+#include "tests/support/face_part.h"
 
 namespace toothpath {
 namespace {
@@ -48,7 +50,7 @@ ball::FinishingOptions options(const Asked& a) {
 }
 
 Result<ball::FinishingPasses> passes(const analytic::GearDistance& part, const Asked& a) {
-  const auto& zone = part.space(0).ring().zone;
+  const auto& zone = test::sheet_of(part.space(0)).ring().zone;
   const double margin = a.ball_radius + a.allowance + 0.1;
   return plan_finishing(tooth_space::OffsetSheet(part.space(0), a.ball_radius + a.allowance,
                                                  zone.inner_radius_mm - margin, zone.outer_radius_mm + margin, 33),
@@ -105,7 +107,7 @@ TEST(RandomGears, APlanThatDoesNotCutOrARefusalWithItsReason) {
         EXPECT_TRUE(!r.key.empty() && names_numbers(r.diagnostic.message)) << r.diagnostic.message;
       continue;
     }
-    const analytic::GearDistance part(made.value(), 1.3 * a.ball_radius + 0.6);
+    const analytic::GearDistance part(face_gear::part_of(made.value()), 1.3 * a.ball_radius + 0.6);
     if (part.refusal()) {
       EXPECT_TRUE(names_numbers(part.refusal()->diagnostic.message));
       continue;
@@ -135,7 +137,7 @@ TEST(SteepGears, EveryRingWithinTheLimitsIsFollowed) {
     const Asked a = steep_gear(inner, outer);
     SCOPED_TRACE(fmt::format("ring {} to {}", inner, outer));
     const face_gear::FaceGear gear = test::made(a.gear);
-    const analytic::GearDistance part(gear, 1.5);
+    const analytic::GearDistance part(face_gear::part_of(gear), 1.5);
     ASSERT_FALSE(part.refusal()) << part.refusal()->diagnostic.message;
     const auto plan = passes(part, a);
     ASSERT_TRUE(plan) << plan.error().message;
@@ -177,7 +179,7 @@ TEST(EmptySheet, IsARefusalAndNoPoint) {
 TEST(WideBalls, TrimmedCentresKeepTheRadius) {
   for (const double R : {0.7, 0.75, 0.8, 0.85}) {
     const face_gear::FaceGear gear = test::made(test::small_spur());
-    const analytic::GearDistance part(gear, 1.7);
+    const analytic::GearDistance part(face_gear::part_of(gear), 1.7);
     const auto& space = part.space(0);
     const tooth_space::OffsetSheet sheet(space, R, 60 - R - 0.1, 65 + R + 0.1, 33);
     ASSERT_TRUE(sheet.has_gaps());
@@ -215,7 +217,7 @@ TEST(RunOut, NeverTurnsBack) {
   a.ball_radius = 0.3;
   a.scallop = 0.004;
   const face_gear::FaceGear gear = test::made(g);
-  const analytic::GearDistance part(gear, a.ball_radius);
+  const analytic::GearDistance part(face_gear::part_of(gear), a.ball_radius);
   ball::FinishingOptions o = options(a);
   o.chord_mm = 0.0002;
   const auto plan =

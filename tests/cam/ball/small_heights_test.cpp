@@ -1,6 +1,7 @@
 // Heights of micrometres that a plan must keep: a small allowance, the cusps of the fillets, and those that regions
 // have of their own.
 #include "cam/ball/finishing.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/tooth_space/offset_sheet.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
@@ -64,10 +65,10 @@ TEST(SmallHeights, AllowancesOfMicrometresAreLeft) {
   for (const double allowance : {0.005, 0.012}) {
     const face_gear::FaceGear gear = test::made(test::small_spur());
     const auto tool = test::ball_mill(1, 6, 0.95, 16, 10);
-    const analytic::GearDistance part(gear, ball::reach_of({tool}));
+    const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({tool}));
     plan::Options options;
     options.limits.gouge_mm = 0.01;
-    const auto plan = plan::plan_face_gear(part, {tool}, {test::finishing(0, 0.04, 0.01, allowance)}, options);
+    const auto plan = plan::plan_milling(part, {tool}, {test::finishing(0, 0.04, 0.01, allowance)}, options);
     ASSERT_TRUE(plan.has_value()) << plan.refused()->diagnostic.message;
     double least = INFINITY;
     for (const auto& s : fed(plan.value().paths.front(), 0.5))
@@ -90,8 +91,8 @@ TEST(SmallHeights, CuspsOfTheFilletsAreAsAskedAndTold) {
                         CuspCase{"offset", 1.6, 8, 1.5, 0.02, 0.002}, CuspCase{"conical", 0.7, 6, 0.65, 0.01, 0.001}}) {
     const face_gear::FaceGear gear = test::made(test::gear_named(c.gear));
     const auto tool = test::ball_mill(c.ball, c.flute, c.shank, 16, 10);
-    const analytic::GearDistance part(gear, ball::reach_of({tool}));
-    const auto plan = plan::plan_face_gear(part, {tool}, {test::finishing(0, c.scallop, c.chord)}, {});
+    const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({tool}));
+    const auto plan = plan::plan_milling(part, {tool}, {test::finishing(0, c.scallop, c.chord)}, {});
     ASSERT_TRUE(plan.has_value()) << plan.refused()->diagnostic.message;
     const auto most = highest_places(part, fed(plan.value().paths.front(), 0.5 * c.ball));
     const Highest &fillet = most[path::Region::fillet], &root = most[path::Region::root],
@@ -115,14 +116,14 @@ TEST(SmallHeights, EveryRegionKeepsTheOneOfItsOwn) {
     const double ball = name == std::string("spur") ? 1 : 1.6, smaller = 0.8 * ball;
     const std::vector tools = {test::ball_mill(ball, 8, 0.95 * ball, 16, 10),
                                test::ball_mill(smaller, 8, 0.95 * smaller, 16, 10)};
-    const analytic::GearDistance part(gear, ball::reach_of(tools));
+    const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of(tools));
     const path::ByRegion<double> asked{{0.008, 0.02, 0.012}};
     auto flanks = test::finishing(0, 0.008, 0.002), bottom = test::finishing(1, 0.02, 0.002);
     flanks.regions = {{true, false, false}};
     flanks.scallops_mm = {{0.008, 0, 0}};
     bottom.regions = {{false, true, true}};
     bottom.scallops_mm = {{0, 0.02, 0.012}};
-    const auto plan = plan::plan_face_gear(part, tools, {flanks, bottom}, {});
+    const auto plan = plan::plan_milling(part, tools, {flanks, bottom}, {});
     ASSERT_TRUE(plan.has_value()) << plan.refused()->diagnostic.message;
     auto segments = fed(plan.value().paths[0], 0.5 * ball);
     const auto below = fed(plan.value().paths[1], 0.5 * smaller);
@@ -147,11 +148,11 @@ TEST(SmallHeights, BordersBetweenOperationsKeepTheCusp) {
   constexpr double ball = 1.5;
   for (const path::ByRegion<bool>& first : {path::ByRegion<bool>{{true, false, false}}, {{true, false, true}}}) {
     const std::vector tools = {test::ball_mill(ball, 6, 0.95 * ball, 16, 10)};
-    const analytic::GearDistance part(gear, ball::reach_of(tools));
+    const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of(tools));
     std::vector operations = {test::finishing(0, kAsked, 0.002), test::finishing(0, kAsked, 0.002)};
     operations[0].regions = first;
     for (const path::Region region : path::kRegions) operations[1].regions[region] = !first[region];
-    const auto plan = plan::plan_face_gear(part, tools, operations, {});
+    const auto plan = plan::plan_milling(part, tools, operations, {});
     ASSERT_TRUE(plan.has_value()) << plan.refused()->diagnostic.message;
     auto segments = fed(plan.value().paths[0], 0.5 * ball);
     const auto below = fed(plan.value().paths[1], 0.5 * ball);

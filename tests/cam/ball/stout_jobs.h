@@ -3,7 +3,9 @@
 #pragma once
 
 #include "cam/ball/finishing.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
+#include "tests/support/face_part.h"
 
 namespace toothpath::test {
 
@@ -74,8 +76,8 @@ inline double least_turning_tilt(const path::ClPath& path) {
 inline StoutOutcome plan_stout(const StoutJob& job) {
   StoutOutcome out;
   const face_gear::FaceGear gear = made(stout_gear(job.gear));
-  const analytic::GearDistance part(gear, ball::reach_of({job.tool}));
-  const auto plan = plan::plan_face_gear(part, {job.tool}, {finishing(0, job.scallop_mm, 0.002)}, {});
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({job.tool}));
+  const auto plan = plan::plan_milling(part, {job.tool}, {finishing(0, job.scallop_mm, 0.002)}, {});
   if (const auto* refusal = plan.refused()) {
     out.words = refusal->diagnostic.message;
     return out;
@@ -101,7 +103,7 @@ inline StoutOutcome plan_stout(const StoutJob& job) {
 /// The passes of the job, as the planner lays them.
 inline std::vector<ball::BallPass> stout_passes(const StoutJob& job, const analytic::GearDistance& part) {
   const double R = job.tool.radius_mm();
-  const auto& ring = part.space(0).ring().zone;
+  const auto& ring = test::sheet_of(part.space(0)).ring().zone;
   const tooth_space::OffsetSheet sheet(part.space(0), R, ring.inner_radius_mm - R - 0.1, ring.outer_radius_mm + R + 0.1,
                                        33);
   ball::FinishingOptions options;
@@ -120,7 +122,7 @@ inline bool body_is_in_the_way(const analytic::GearDistance& part, const tool::F
                                const Vec3& axis, double clearance) {
   constexpr double kApart = 0.15;
   const Vec3 x = axis.unitOrthogonal(), y = axis.cross(x);
-  const double top = part.gear().blank_top() + clearance;
+  const double top = part.part().blank_top() + clearance;
   double lowest = INFINITY;
   const auto ring = [&](double h, double rho) {
     const int around = std::max(12, int(2 * kPi * rho / kApart));

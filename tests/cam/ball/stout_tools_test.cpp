@@ -4,8 +4,10 @@
 
 #include "cam/ball/orientation_way.h"
 #include "cam/ball/tool_orientation.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/plain_way.h"
 #include "tests/cam/ball/stout_jobs.h"
+#include "tests/support/face_part.h"
 #include "tests/support/plain_frustum.h"
 
 namespace toothpath {
@@ -77,7 +79,7 @@ TEST(StoutTools, TheOthersAreToldWhyAndWhatWouldDo) {
     EXPECT_TRUE(says(words, "its shank cuts in by") || says(words, "its holder cuts in by"));
     EXPECT_TRUE(says(words, "it must keep 0.062 mm (the clearance is 0.050 mm"));
     const face_gear::FaceGear gear = test::made(test::stout_gear(job.gear));
-    const analytic::GearDistance part(gear, ball::reach_of({job.tool}));
+    const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({job.tool}));
     bool one_is_blocked = false;
     for (const auto& point :
          places_at(test::stout_passes(job, part), test::number_after(words, "with the ball at radius "),
@@ -130,7 +132,7 @@ TEST(StoutTools, TurnedBodiesLieBetweenCoreAndHull) {
 TEST(StoutTools, SquaresOfLeansAreToldRightly) {
   const auto job = test::stout_jobs()[1];
   const face_gear::FaceGear gear = test::made(test::stout_gear(job.gear));
-  const analytic::GearDistance part(gear, ball::reach_of({job.tool}));
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({job.tool}));
   const analytic::BodyTree tree(part);
   const ball::OrientationOptions options;
   const ball::OrientationCheck check(part, tree, 0, job.tool, options);
@@ -200,7 +202,7 @@ TEST(StoutTools, ABodyWithRoomKeepsEveryClearance) {
   test::Random random(3);
   for (const auto& name : test::gear_names()) {
     const face_gear::FaceGear gear = test::made(test::gear_named(name));
-    const analytic::GearDistance part(gear, 1);
+    const analytic::GearDistance part(face_gear::part_of(gear), 1);
     const analytic::BodyTree tree(part);
     const double r = 0.5 * (gear.inner_radius() + gear.outer_radius()), a = part.space_azimuth(0, r),
                  m = gear.parameters().module_mm, z = gear.blank_top() - 0.3 * m;
@@ -252,21 +254,21 @@ TEST(StoutTools, DirectionsThatDoNotJoinAreTwoStrokes) {
 TEST(StoutTools, APassInStrokesIsCutWhole) {
   const face_gear::FaceGear gear = test::made(test::stout_gear("axis"));
   const auto job = test::stout_jobs()[11];
-  const analytic::GearDistance part(gear, ball::reach_of({job.tool}));
-  const auto plan = plan::plan_face_gear(part, {job.tool}, {test::finishing(0, job.scallop_mm, 0.002)}, {});
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({job.tool}));
+  const auto plan = plan::plan_milling(part, {job.tool}, {test::finishing(0, job.scallop_mm, 0.002)}, {});
   ASSERT_TRUE(plan.has_value()) << plan.refused()->diagnostic.message;
   const auto& told = plan.value().operations.front();
   EXPECT_GT(plan.value().directions.front().passes, told.passes) << "none was split";
   // Every place of the surface is as near to a ball as the asked cusp.
   const auto& records = plan.value().paths.front().records;
   const double R = job.tool.radius_mm();
-  const auto& zone = part.space(0).ring().zone;
+  const auto& zone = test::sheet_of(part.space(0)).ring().zone;
   const tooth_space::OffsetSheet surface(part.space(0), 0, zone.inner_radius_mm, zone.outer_radius_mm, 17);
   for (int j = 0; j <= 24; ++j)
     for (int k = 0; k <= 120; ++k) {
       const auto at =
           surface.raw(5.0 * k / 120, zone.inner_radius_mm + (zone.outer_radius_mm - zone.inner_radius_mm) * j / 24);
-      if (!at || at->contact.p.z() > part.space(0).surface().z_tip(zone.inner_radius_mm)) continue;
+      if (!at || at->contact.p.z() > test::sheet_of(part.space(0)).surface().z_tip(zone.inner_radius_mm)) continue;
       double least = INFINITY;
       for (std::size_t n = 1; n < records.size(); ++n) {
         if (records[n].kind != path::MoveKind::feed) continue;

@@ -11,7 +11,7 @@ namespace {
 
 bool same_bytes(const Vec3& a, const Vec3& b) { return std::memcmp(a.data(), b.data(), 3 * sizeof(double)) == 0; }
 
-void expect_the_same(const plan::FaceGearPlan& a, const plan::FaceGearPlan& b) {
+void expect_the_same(const plan::MillingPlan& a, const plan::MillingPlan& b) {
   ASSERT_EQ(a.paths.size(), b.paths.size());
   for (std::size_t p = 0; p < a.paths.size(); ++p) {
     const auto &x = a.paths[p].records, &y = b.paths[p].records;

@@ -2,6 +2,7 @@
 #include "cam/ball/tool_direction.h"
 
 #include "cam/tool/body.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/brute_force_gear_solid.h"
 #include "tests/support/plain_frustum.h"
@@ -23,8 +24,8 @@ TEST(Direction, UprightForPlainJobs) {
 TEST(Direction, FatHolderOnAShortToolIsRefusedOrLeansAndSaysWhy) {
   const face_gear::FaceGear gear = test::made(test::offset_gear());
   auto tool = test::ball_mill(1.6, 4, 1.5, 5, 40);
-  const analytic::GearDistance part(gear, ball::reach_of({tool}));
-  const auto plan = plan::plan_face_gear(part, {tool}, {test::finishing(0, 0.05, 0.002)}, {});
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({tool}));
+  const auto plan = plan::plan_milling(part, {tool}, {test::finishing(0, 0.05, 0.002)}, {});
   if (const auto* refusal = plan.refused()) {
     EXPECT_EQ(refusal->key, "operation[0].tool");
     EXPECT_NE(refusal->diagnostic.message.find("holder"), std::string::npos) << refusal->diagnostic.message;
@@ -65,7 +66,7 @@ TEST(Body, GapAgainstSampledSurfaces) {
   for (const auto& name : test::gear_names()) {
     const face_gear::FaceGear gear = test::made(test::gear_named(name));
     const double m = gear.parameters().module_mm;
-    const analytic::GearDistance part(gear, m);
+    const analytic::GearDistance part(face_gear::part_of(gear), m);
     const analytic::BodyTree tree(part);
     const test::BruteForceGearSolid brute(gear);
     std::vector<Vec3> samples;

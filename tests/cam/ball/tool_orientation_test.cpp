@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cam/ball/orientation_way.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/cam/ball/plain_way.h"
 #include "tests/support/brute_force_gear_solid.h"
@@ -29,8 +30,8 @@ const test::PlannedJob& short_job() {
 
 std::string refusal_with(const tool::ToolAssembly& tool) {
   const face_gear::FaceGear gear = test::made(steep_gear());
-  const analytic::GearDistance part(gear, ball::reach_of({tool}));
-  const auto plan = plan::plan_face_gear(part, {tool}, {test::finishing(0, 0.5, 0.002)}, {});
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({tool}));
+  const auto plan = plan::plan_milling(part, {tool}, {test::finishing(0, 0.5, 0.002)}, {});
   const auto* refusal = plan.refused();
   return refusal != nullptr ? refusal->key + ": " + refusal->diagnostic.message : "";
 }
@@ -64,12 +65,12 @@ double sampled_gap(const std::vector<Vec3>& samples, double pitch, const tool::F
 /// Every facet of the teeth about space 0, one after another.
 double flat_gap(const analytic::GearDistance& part, const tool::Frustum& f, const Vec3& tip, const Vec3& axis,
                 double enough, double resolution) {
-  const double above = tool::lowest_z(f, tip, axis) - part.gear().blank_top(), sag = part.cell_sag_mm();
+  const double above = tool::lowest_z(f, tip, axis) - part.part().blank_top(), sag = part.cell_sag_mm();
   if (above >= enough) return enough;
   double best = enough + sag;
   for (int zone = 0; zone < part.zones(); ++zone)
     for (int tooth = -4; tooth <= 4; ++tooth) {
-      const Vec3 t = turned(tip, -tooth * part.gear().pitch()), u = turned(axis, -tooth * part.gear().pitch());
+      const Vec3 t = turned(tip, -tooth * part.part().pitch()), u = turned(axis, -tooth * part.part().pitch());
       for (const auto& [a, b, c] : part.triangles(zone))
         best = test::triangle_gap(a, b, c, f, t, u, best, resolution, 8);
     }
@@ -80,7 +81,7 @@ TEST(BodyTree, AgreesWithTheFlatSearchAndWithSamples) {
   for (const auto& name : test::gear_names()) {
     const face_gear::FaceGear gear = test::made(test::gear_named(name));
     const double m = gear.parameters().module_mm, enough = 0.6 * m;
-    const analytic::GearDistance part(gear, m);
+    const analytic::GearDistance part(face_gear::part_of(gear), m);
     const analytic::BodyTree tree(part);
     test::Random random(71);
     int close = 0;
@@ -332,14 +333,14 @@ TEST(Orientation, PlainJobsRunNoSimultaneousSolver) {
   const auto before = ball::orientation_runs();
   const face_gear::FaceGear gear = test::made(test::small_spur());
   const auto tool = test::ball_mill(1, 6, 0.95, 16, 10);
-  const analytic::GearDistance part(gear, ball::reach_of({tool}));
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({tool}));
   std::set<std::string> stages;
   plan::Options options;
   options.stage = [&](const std::string& name, const std::function<void()>& work) {
     stages.insert(name);
     work();
   };
-  const auto plan = plan::plan_face_gear(part, {tool}, {test::finishing(0, 0.05, 0.004)}, options);
+  const auto plan = plan::plan_milling(part, {tool}, {test::finishing(0, 0.05, 0.004)}, options);
   ASSERT_TRUE(plan.has_value());
   EXPECT_EQ(ball::orientation_runs(), before);
   EXPECT_EQ(stages, (std::set<std::string>{"tool passes", "tool direction", "links"}));

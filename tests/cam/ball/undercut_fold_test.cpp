@@ -1,6 +1,7 @@
 // Gears whose pitch point lies beyond the fold of the undercut (few teeth against the shaper's, low pressure angles,
 // strong helices): the space is found wherever a plain search finds a regular flank, and nowhere else.
 #include "tests/cam/ball/face_gear_jobs.h"
+#include "geometry/face_gear/part.h"
 #include "tests/support/brute_force_face_gear.h"
 
 namespace toothpath {
@@ -117,7 +118,7 @@ TEST(UndercutFold, SpacesAreFoundWhereASearchFindsARegularFlank) {
                              parameters.shaper_teeth, parameters.teeth, degrees(parameters.pressure_angle_rad),
                              degrees(ring.zone.helix_angle_rad), ring.zone.inner_radius_mm, ring.zone.outer_radius_mm));
     for (const int side : {1, -1}) beyond += f.flank_J(side, std::tan(f.shaper.alpha_t), side * f.shaper.alpha_t) <= 0;
-    const analytic::GearDistance part(gear, 1.0);
+    const analytic::GearDistance part(face_gear::part_of(gear), 1.0);
     accepted += !part.refusal();
     EXPECT_EQ(!part.refusal(), searched_ring(gear) == Flank::regular)
         << (part.refusal() ? part.refusal()->diagnostic.message : "accepted");
@@ -134,7 +135,7 @@ std::optional<std::string> refusal_of(const face_gear::FaceGearParameters& param
   auto made = face_gear::FaceGear::make(parameters);
   if (made.refused()) return made.refused()->front().diagnostic.message;
   const face_gear::FaceGear gear = std::move(made).value();
-  const analytic::GearDistance part(gear, 1.0);
+  const analytic::GearDistance part(face_gear::part_of(gear), 1.0);
   if (part.refusal()) return part.refusal()->diagnostic.message;
   return {};
 }
@@ -219,8 +220,8 @@ TEST(UndercutFold, CloseToTheLimitARefusalTellsWhatWouldDo) {
     const auto plan_of = [&](const face_gear::FaceGearParameters& parameters, double ball) {
       const face_gear::FaceGear gear = test::made(parameters);
       const auto tool = test::ball_mill(ball, 5, 0.95 * ball, 14, 10);
-      const analytic::GearDistance part(gear, ball::reach_of({tool}));
-      return plan::plan_face_gear(part, {tool}, {test::finishing(0, 0.03, 0.002)}, {});
+      const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({tool}));
+      return plan::plan_milling(part, {tool}, {test::finishing(0, 0.03, 0.002)}, {});
     };
     auto gear = gear_of(c);
     const auto refused = plan_of(gear, c.ball);

@@ -3,6 +3,7 @@
 
 #include "cam/cut/swept_tool.h"
 #include "cam/cut/zone_places.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
 namespace toothpath {
@@ -119,7 +120,7 @@ TEST(CutSurface, SolversAreComparedAtOnePlaceOnly) {
   g.backlash_mm = 0.0058;
   g.zones = {{radians(25.47), 47.31, 47.89}};
   const auto gear = test::made(g);
-  const analytic::GearDistance part(gear, 1.0);
+  const analytic::GearDistance part(face_gear::part_of(gear), 1.0);
   // The residual needs the tool, not its path.
   const auto cut = cut::measure_cut_surface(part, {}, {test::finishing(0, 0.0087, 0.005, 0.0104)},
                                             {test::ball_mill(0.29, 1, 0.29, 8, 10)});

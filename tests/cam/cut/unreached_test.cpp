@@ -3,6 +3,7 @@
 #include "cam/cut/unreached.h"
 
 #include "cam/cut/cut_surface.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/face_gear/shaper.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/brute_force_gear_solid.h"
@@ -51,7 +52,7 @@ class LargestBallOf : public testing::TestWithParam<std::string> {};
 TEST_P(LargestBallOf, AgreesWithDensePairs) {
   const face_gear::FaceGear gear = test::made(test::gear_named(GetParam()));
   const double most = gear.parameters().module_mm;
-  const analytic::GearDistance part(gear, most);
+  const analytic::GearDistance part(face_gear::part_of(gear), most);
   const auto ball = cut::largest_reaching_ball(part, most);
   const double pairs = least_ball_of_pairs(gear, most);
   EXPECT_LE(ball.radius_mm, pairs * 1.001);
@@ -62,7 +63,7 @@ TEST_P(LargestBallOf, AgreesWithDensePairs) {
 TEST_P(LargestBallOf, TouchesEverythingAndALargerOneDoesNot) {
   const face_gear::FaceGear gear = test::made(test::gear_named(GetParam()));
   const double most = gear.parameters().module_mm;
-  const analytic::GearDistance part(gear, most);
+  const analytic::GearDistance part(face_gear::part_of(gear), most);
   const double R = cut::largest_reaching_ball(part, most).radius_mm;
   const test::BruteForceGearSolid solid(gear);
   for (const double radius : {R, 1.05 * R}) {
@@ -82,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Gears, LargestBallOf, testing::Values("spur", "offset",
 
 TEST(LargestBall, IsNotLookedForAboveTheOneThatFits) {
   const face_gear::FaceGear gear = test::made(test::small_spur());
-  const analytic::GearDistance part(gear, 1);
+  const analytic::GearDistance part(face_gear::part_of(gear), 1);
   EXPECT_DOUBLE_EQ(cut::largest_reaching_ball(part, 0.3).radius_mm, 0.3);
 }
 

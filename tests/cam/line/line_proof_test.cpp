@@ -16,9 +16,11 @@
 #include "cam/line/room.h"
 #include "cam/path/motions.h"
 #include "cam/tool/proof_tool.h"
+#include "geometry/face_gear/part.h"
 #include "tests/cam/line/line_cases.h"
 #include "tests/support/brute_force_bodies.h"
 #include "tests/support/brute_force_line.h"
+#include "tests/support/face_part.h"
 #include "tests/support/modified_flank.h"
 #include "tests/support/random.h"
 
@@ -60,7 +62,7 @@ struct Planned {
 Planned planned(const LineJob& job, double bias) {
   const auto gear = made(job.parameters);
   const auto tool = profile_of(job.tool);
-  auto part = std::make_unique<analytic::GearDistance>(gear, 5);
+  auto part = std::make_unique<analytic::GearDistance>(face_gear::part_of(gear), 5);
   line::LineOperation o;
   o.speed_rpm = 20000;
   o.feed_mm_min = 300;
@@ -381,7 +383,7 @@ RandomJob random_job(Random& random, int k) {
 path::ToolMotion grazing(Random& random, const face_gear::FaceGear& gear, const analytic::GearDistance& part,
                          const BruteForceBodies& brute, const BruteBody& body, double module_mm, bool turns) {
   const int zone = int(random.index(std::size_t(part.zones())));
-  const auto& ring = part.space(zone).ring().zone;
+  const auto& ring = test::sheet_of(part.space(zone)).ring().zone;
   const double r = random(ring.inner_radius_mm, ring.outer_radius_mm), azimuth = part.space_azimuth(zone, r);
   path::ToolMotion m;
   m.axis_from = (Vec3::UnitZ() + random.vector(0.35)).normalized();
@@ -409,7 +411,7 @@ TEST(RandomPoses, TheBoundCoversDenseSampling) {
   for (int k = 0; k < 6; ++k) {
     const auto job = random_job(random, k);
     const auto gear = made(job.gear);
-    const analytic::GearDistance part(gear, 5);
+    const analytic::GearDistance part(face_gear::part_of(gear), 5);
     const BruteForceBodies brute(gear, 14, 14);
     const double m_n = job.gear.module_mm;
     for (const auto& data : job.tools) {
@@ -449,7 +451,7 @@ TEST(RandomPoses, TheBoundCoversStatedDeviations) {
   for (int k = 0; k < 3; ++k) {
     const auto job = random_job(random, k);
     const auto gear = made(job.gear);
-    const analytic::GearDistance part(gear, 5);
+    const analytic::GearDistance part(face_gear::part_of(gear), 5);
     const BruteForceBodies brute(gear, 14, 14);
     const auto& data = job.tools[0];
     const auto tool = tool::proof_tool(profile_of(data), 1);
@@ -672,7 +674,7 @@ TEST(LineProofPaths, CheckedPath) {
 
 TEST(Room, IsRefusedWhereAFullStationHasNone) {
   const auto gear = made(quarter_dhfg());
-  const analytic::GearDistance part(gear, 5);
+  const analytic::GearDistance part(face_gear::part_of(gear), 5);
   const auto refused = [&](const tool::CutterData& data, double allowance, const char* text) {
     const auto tool = profile_of(data);
     line::LineOperation o;

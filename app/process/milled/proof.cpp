@@ -1,4 +1,4 @@
-#include "app/process/face/proof.h"
+#include "app/process/milled/proof.h"
 
 #include <algorithm>
 #include <map>
@@ -6,15 +6,15 @@
 #include <set>
 
 #include "app/base/units.h"
-#include "app/process/face/unreached.h"
+#include "app/process/milled/unreached.h"
 #include "app/process/proof_limits.h"
 #include "cam/cut/engagement.h"
-#include "cam/plan/face_gear.h"
+#include "cam/plan/milling.h"
 #include "cam/proof/rapid_clearance.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
 
-namespace toothpath::face {
+namespace toothpath::milled {
 namespace {
 
 constexpr double kBallMotionTolerance =
@@ -202,60 +202,57 @@ report::Finding left_of(const cut::CutSurface& surface) {
 
 }  // namespace
 
-joints::ClearanceBody clearance_body(const face_gear::FaceGear& gear) {
-  double lowest = gear.lowest_root();
-  if (gear.rings().size() > 1) lowest = std::min(lowest, gear.groove_floor());
-  return {gear.outer_radius(), lowest - 2.5 * gear.parameters().module_mm, gear.blank_top()};
-}
-
-FaceGearCheck::FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits,
-                             const analytic::GearDistance& part, const analytic::GougeCheck& check,
-                             const cut::CutSurfaceOptions& grid)
+MilledCheck::MilledCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits,
+                         const analytic::GearDistance& part, const GearBody& body, const analytic::GougeCheck& check,
+                         const cut::CutSurfaceOptions& grid)
     : job_(job),
       machine_(machine),
       limits_(limits),
       part_(part),
+      body_(body),
       check_(check),
       grid_(grid),
       tools_(tool::proof_tools(job.tools)) {}
 
-int FaceGearCheck::teeth() const { return part_.gear().parameters().teeth; }
+int MilledCheck::teeth() const { return body_.teeth; }
 
-double FaceGearCheck::motion_tolerance() const { return kBallMotionTolerance; }
+double MilledCheck::motion_tolerance() const { return kBallMotionTolerance; }
 
-double FaceGearCheck::pitches_from_space_0(const Vec3& tip) const {
-  const auto& zones = part_.gear().parameters().zones;
-  const double r = radius(tip);
+double MilledCheck::pitches_from_space_0(const Vec3& tip) const {
+  const double s = part_.space(0).outline().chart.along(tip);
+  const auto away = [&](int zone) {
+    const tooth_space::Outline& ring = part_.space(zone).outline();
+    return std::max(ring.s_from - s, s - ring.s_to);
+  };
   int zone = 0;
-  for (std::size_t k = 1; k < zones.size(); ++k)  // from the middle of a groove on the outer ring counts
-    if (2 * r > zones[k - 1].outer_radius_mm + zones[k].inner_radius_mm) zone = int(k);
-  return (std::atan2(tip.y(), tip.x()) - part_.space_azimuth(zone, r)) / part_.gear().pitch();
+  for (int k = 1; k < part_.zones(); ++k)  // in a groove: of the nearer ring
+    if (away(k) < away(zone)) zone = k;
+  return (std::atan2(tip.y(), tip.x()) - part_.space_azimuth(zone, s)) / part_.space(zone).outline().pitch;
 }
 
 /// The cylinder that the axis program promised to avoid.
-Status FaceGearCheck::rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const {
-  return check_rapids_outside(trace, control, machine_, *job_.setup, clearance_body(part_.gear()), job_.tools);
+Status MilledCheck::rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const {
+  return check_rapids_outside(trace, control, machine_, *job_.setup, body_.links, job_.tools);
 }
 
-bool FaceGearCheck::may_cut(const path::ToolMotion& motion) const {
-  const proof::RapidObstacle blank{part_.gear().outer_radius(), part_.gear().inner_radius(), part_.gear().blank_top()};
+bool MilledCheck::may_cut(const path::ToolMotion& motion) const {
   const tool::ProofTool& used = tool_of(motion.operation);
-  return !(used.ball_mill ? proof::prove_rapid(motion, *used.ball_mill, blank)
-                          : proof::prove_rapid(motion, used, blank))
+  return !(used.ball_mill ? proof::prove_rapid(motion, *used.ball_mill, body_.rapids)
+                          : proof::prove_rapid(motion, used, body_.rapids))
               .clear;
 }
 
 /// What finishes a region last.
-bool FaceGearCheck::measures(int operation) const {
+bool MilledCheck::measures(int operation) const {
   return std::any_of(std::begin(path::kRegions), std::end(path::kRegions), [&](path::Region region) {
     return path::finisher_of(job_.operations, region) == std::size_t(operation);
   });
 }
 
 /// Later teeth that are no copies of the first one, by what may stand on them.
-class FaceGearCheck::OtherTeeth {
+class MilledCheck::OtherTeeth {
  public:
-  OtherTeeth(const process::ProgramProof& program, const FaceGearCheck& check) : check_(check) {
+  OtherTeeth(const process::ProgramProof& program, const MilledCheck& check) : check_(check) {
     for (const process::ToothCut& other : program.other_teeth) {
       if (other.cuts_nothing() || !check.measures(other.operation)) continue;
       double& away = away_[other.tooth];
@@ -280,7 +277,7 @@ class FaceGearCheck::OtherTeeth {
         cuts[{m.tooth, m.operation}].push_back(m);
     for (auto& [key, own] : cuts)
       near_.at(key.first).add(in_space_0(std::move(own), check_.teeth()), check_.tool_of(key.second),
-                              check_.part_.gear().blank_top());
+                              check_.part_.part().highest_z());
   }
   /// Those that must be measured by themselves, and what is missing there; empty: nothing is.
   [[nodiscard]] std::map<int, std::string> unlike() const {
@@ -299,18 +296,18 @@ class FaceGearCheck::OtherTeeth {
     return true;
   }
 
-  const FaceGearCheck& check_;
+  const MilledCheck& check_;
   std::map<int, double> away_;
   std::map<int, std::string> unlike_;
   std::map<int, cut::LeftOnTooth> near_;
   double watch_mm_ = 0;
 };
 
-const tool::ProofTool& FaceGearCheck::tool_of(int operation) const {
+const tool::ProofTool& MilledCheck::tool_of(int operation) const {
   return tools_[std::size_t(job_.operations[std::size_t(operation)].tool)];
 }
 
-void FaceGearCheck::judge_unlike(process::ProgramProof& program, const OtherTeeth& others) {
+void MilledCheck::judge_unlike(process::ProgramProof& program, const OtherTeeth& others) {
   const std::map<int, std::string> unlike = others.unlike();
   std::set<int> teeth;
   for (const auto& [tooth, why] : unlike) teeth.insert(tooth);
@@ -332,8 +329,7 @@ void FaceGearCheck::judge_unlike(process::ProgramProof& program, const OtherTeet
 }
 
 /// What an operation takes off at a time, in what those before it leave: nobody who wrote the text by hand sees that.
-void FaceGearCheck::judge_load(std::span<const path::ToolMotion> firsts, std::vector<std::string>& reasons) const {
-  const face_gear::FaceGear& gear = part_.gear();
+void MilledCheck::judge_load(std::span<const path::ToolMotion> firsts, std::vector<std::string>& reasons) const {
   const readback::AskedConditions asked = process::asked_conditions(job_);
   std::vector<std::unique_ptr<cut::Removed>> removed;
   std::vector<const cut::Removed*> before;
@@ -345,8 +341,8 @@ void FaceGearCheck::judge_load(std::span<const path::ToolMotion> firsts, std::ve
       if (m.operation == int(n)) motions.push_back(m);
     if (motions.empty()) return;  // told elsewhere; what the next ones meet is not known
     const tool::Profile mill = tool::profile_of(tool);
-    const cut::EngagementQuery stock{mill, tool_of(int(n)).cutting, before,
-                                     [&](const Vec3& p) { return gear.in_blank(p); }, gear.blank_top()};
+    const cut::EngagementQuery stock{mill, tool_of(int(n)).cutting,    before, body_.in_blank,
+                                      part_.part().highest_z(), 1, part_.part().chart()};
     const cut::Overload load = cut::overload_along(
         motions, stock,
         {asked.operations[n].feed_mm_min, op.step_down_mm, ball::stock_before(job_.operations, job_.tools, n)});
@@ -365,16 +361,15 @@ void FaceGearCheck::judge_load(std::span<const path::ToolMotion> firsts, std::ve
           "operation {}: at line {} the chip lies {:.3f} mm or more below what was free before, the operations ahead "
           "leave {:.3f} mm, limit {:.1f} times that: a cut of theirs is missing",
           n, load.stock_line, load.stock_mm, ball::stock_before(job_.operations, job_.tools, n), cut::kLoadFactor));
-    removed.push_back(std::make_unique<cut::Removed>(std::move(motions), tool_of(int(n)), gear.blank_top()));
+    removed.push_back(std::make_unique<cut::Removed>(std::move(motions), tool_of(int(n)), part_.part().highest_z()));
     before.push_back(removed.back().get());
   }
 }
 
-void FaceGearCheck::meet(const readback::OperationTrace&, std::span<const path::ToolMotion>,
-                         const readback::NcControl&) {
-}  // all that is said of a face gear holds for the teeth that are proven
+void MilledCheck::meet(const readback::OperationTrace&, std::span<const path::ToolMotion>, const readback::NcControl&) {
+}  // all that is said of the gear holds for the teeth that are proven
 
-void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
+void MilledCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   std::vector<int> tool_of_operation;
   for (const auto& operation : job_.operations) tool_of_operation.push_back(operation.tool);
   OtherTeeth others(program, *this);
@@ -393,7 +388,7 @@ void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock
   clock.run("cut surface", [&] { judge_unlike(program, others); });
   if (!program.reasons.empty()) program.reasons.insert(program.reasons.end(), shortened.begin(), shortened.end());
   if (!program.reasons.empty())
-    if (const auto coarse = process::coarse_words(job_, machine_, part_.gear().outer_radius()))
+    if (const auto coarse = process::coarse_words(job_, machine_, body_.outer_radius_mm))
       program.reasons.push_back(*coarse);
   judge_unreached(surface.unreached, job_.verify.unreached_mm, program.reasons);
   program.excess = surface.operations;
@@ -406,4 +401,4 @@ void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock
   if (surface.scallop.requested_mm > 0) program.findings.push_back(scallop_of(surface.scallop));
 }
 
-}  // namespace toothpath::face
+}  // namespace toothpath::milled

@@ -1,22 +1,23 @@
-// What a face gear adds to the proof of a program (program_proof.h): gouge, shank and holder, rapids about the blank,
-// the cut surface.
+// What a gear that is milled with ball mills adds to the proof of a program (program_proof.h): gouge, shank and holder,
+// rapids about the blank, the cut surface.
 #pragma once
 
+#include "app/process/milled/body.h"
 #include "app/process/program_proof.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/cut/cut_surface.h"
 #include "cam/proof/limits.h"
 #include "cam/tool/proof_tool.h"
 
-namespace toothpath::face {
+namespace toothpath::milled {
 
 /// Everything that it is made of must outlive it.
-class FaceGearCheck final : public process::GearCheck {
+class MilledCheck final : public process::GearCheck {
  public:
   /// @param grid  on which the cut surface is measured
-  FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits,
-                const analytic::GearDistance& part, const analytic::GougeCheck& check,
-                const cut::CutSurfaceOptions& grid = {});
+  MilledCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits,
+              const analytic::GearDistance& part, const GearBody& body, const analytic::GougeCheck& check,
+              const cut::CutSurfaceOptions& grid = {});
 
   [[nodiscard]] int teeth() const override;
   [[nodiscard]] double motion_tolerance() const override;
@@ -44,12 +45,10 @@ class FaceGearCheck final : public process::GearCheck {
   const machines::Machine& machine_;
   proof::ProofLimits limits_;
   const analytic::GearDistance& part_;
+  const GearBody& body_;
   const analytic::GougeCheck& check_;
   cut::CutSurfaceOptions grid_;
   std::vector<tool::ProofTool> tools_;  // of the job
 };
 
-/// The blank as a cylinder about the gear axis: from the underside of the mesh to the top of the stock.
-[[nodiscard]] joints::ClearanceBody clearance_body(const face_gear::FaceGear& gear);
-
-}  // namespace toothpath::face
+}  // namespace toothpath::milled

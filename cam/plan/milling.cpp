@@ -1,4 +1,4 @@
-#include "cam/plan/face_gear.h"
+#include "cam/plan/milling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include "cam/plan/beside_side.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
+#include "geometry/face_gear/part.h"
 
 namespace toothpath::plan {
 namespace {
@@ -83,9 +84,9 @@ proof::DirectionChoice direction_of(const line::LinePlan& planned, int operation
 constexpr double kTrialShares[] = {0, 0.05, 0.1, 0.2, 0.4, 0.8};  // of the diameter
 constexpr double kTrialStep = 0.05;                               // mm
 
-class FaceGearPlanner {
+class MillingPlanner {
  public:
-  FaceGearPlanner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
+  MillingPlanner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
                   const std::vector<path::MillingOperation>& operations, const Options& options)
       : part_(part),
         tools_(tools),
@@ -94,7 +95,7 @@ class FaceGearPlanner {
         o_(options),
         ball_(part, tools, operations_, options) {}
 
-  Expected<FaceGearPlan, ball::PlanRefusal> run(const Progress& progress) {
+  Expected<MillingPlan, ball::PlanRefusal> run(const Progress& progress) {
     if (const auto& refusal = part_.refusal()) return ball::PlanRefusal{"gear." + refusal->key, refusal->diagnostic};
     for (std::size_t n = 0; n < operations_.size(); ++n) {
       if (progress) progress(to_string(operations_[n].type));
@@ -155,7 +156,7 @@ class FaceGearPlanner {
       if (as.shank_diameter_mm <= 0) return {};
       std::vector<tool::ToolAssembly> tools = tools_;
       tools[std::size_t(tool)] = as;
-      if (!FaceGearPlanner(part_, tools, asked_, options).run({}).refused()) return as;
+      if (!MillingPlanner(part_, tools, asked_, options).run({}).refused()) return as;
     }
     return {};
   }
@@ -264,7 +265,7 @@ class FaceGearPlanner {
     asked.climb = op.climb;
     asked.link_feed_mm_min = o_.link_feed_mm_min;
     asked.slow_mm = ball::slow_way(operations_, tools_, std::size_t(n));
-    asked.clearance_height_mm = part_.gear().blank_top() + o_.rapid_clearance_mm;
+    asked.clearance_height_mm = part_.part().blank_top() + o_.rapid_clearance_mm;
     line::RoomOptions room;
     room.clearance_mm = o_.limits.clearance_mm;
     if (op.allowance_mm > 0) {
@@ -274,7 +275,7 @@ class FaceGearPlanner {
     }
     asked.room = line::room_of(part_, profile, room);
     std::optional<Result<line::LinePlan>> planned;
-    const auto work = [&] { planned.emplace(line::plan_line_milling(part_.gear(), profile, asked)); };
+    const auto work = [&] { planned.emplace(line::plan_line_milling(face_gear::gear_of(part_.part()), profile, asked)); };
     if (o_.stage) o_.stage("line passes", work);
     else work();
     if (!*planned) return line_refusal(n, planned->error());
@@ -335,9 +336,9 @@ class FaceGearPlanner {
     const tool::Profile mill = tool::profile_of(tool);
     const tool::ProofTool bodies = tool::proof_tool(tool);
     const std::vector<const cut::Removed*> before = cleared();
-    const double top = part_.gear().blank_top();
     const cut::EngagementQuery query{
-        mill, bodies.cutting, before, [&](const Vec3& p) { return part_.gear().in_blank(p); }, top, one_of};
+        mill,   bodies.cutting,        before, [&](const Vec3& p) { return part_.part().in_blank(p); },
+        part_.part().highest_z(), one_of,   part_.part().chart()};
     std::vector<cut::Engaged> engaged;
     const auto work = [&] { engaged = cut::engagement_along(analytic::GougeCheck::motions_of(path), query); };
     if (o_.stage) o_.stage("engagement", work);
@@ -347,7 +348,7 @@ class FaceGearPlanner {
   void remember(std::size_t n) {
     cleared_.push_back(std::make_unique<cut::Removed>(analytic::GougeCheck::motions_of(plan_.paths[n]),
                                                       tool::proof_tool(tools_[std::size_t(operations_[n].tool)]),
-                                                      part_.gear().blank_top()));
+                                                      part_.part().highest_z()));
   }
 
   const analytic::GearDistance& part_;
@@ -358,16 +359,16 @@ class FaceGearPlanner {
   ball::Planner ball_;
   std::vector<std::unique_ptr<cut::Removed>> cleared_;
   std::vector<cut::Engaged> engaged_;  ///< of the path that was planned last, where it was asked for
-  FaceGearPlan plan_;
+  MillingPlan plan_;
 };
 
 }  // namespace
 
-Expected<FaceGearPlan, ball::PlanRefusal> plan_face_gear(const analytic::GearDistance& part,
+Expected<MillingPlan, ball::PlanRefusal> plan_milling(const analytic::GearDistance& part,
                                                          const std::vector<tool::ToolAssembly>& tools,
                                                          const std::vector<path::MillingOperation>& operations,
                                                          const Options& options, const Progress& progress) {
-  return FaceGearPlanner(part, tools, operations, options).run(progress);
+  return MillingPlanner(part, tools, operations, options).run(progress);
 }
 
 }  // namespace toothpath::plan

@@ -1,4 +1,4 @@
-#include "app/process/face/unreached.h"
+#include "app/process/milled/unreached.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "app/base/units.h"
 
-namespace toothpath::face {
+namespace toothpath::milled {
 namespace {
 
 /// "27.3 %"; what is more than nothing is never told as 0.0.
@@ -73,4 +73,4 @@ void judge_unreached(const proof::UnreachedResult& unreached, std::optional<doub
         unreached.height_mm, unreached.ball_mm, *limit_mm, largest_ball_text(unreached)));
 }
 
-}  // namespace toothpath::face
+}  // namespace toothpath::milled

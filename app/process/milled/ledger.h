@@ -1,4 +1,4 @@
-// The ledger of errors of a ball-milled face gear: every source of deviation with the bound that was predicted and the
+// The ledger of errors of a ball-milled gear: every source of deviation with the bound that was predicted and the
 // value that was measured, um. The sum of the predicted bounds must cover what is measured on the cut surface:
 // docs/proof.md.
 #pragma once
@@ -9,15 +9,15 @@
 #include "app/process/program_proof.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/cut/cut_surface.h"
-#include "cam/plan/face_gear.h"
+#include "cam/plan/milling.h"
 #include "postproc/joints/program.h"
 
-namespace toothpath::face {
+namespace toothpath::milled {
 
 /// A gear, what was planned for it, and what that cut.
 struct MilledGear {
   const analytic::GearDistance& part;
-  const plan::FaceGearPlan& plan;
+  const plan::MillingPlan& plan;
   std::span<const tool::ToolAssembly> tools;
   const std::vector<path::MillingOperation>& operations;
   const cut::CutSurface& surface;  ///< with the cusps and residuals found on it
@@ -34,4 +34,4 @@ struct LedgerTerms {
 [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const MilledGear& milled, const joints::AxisProgram& program,
                                                      const process::ProgramProof& proof, const LedgerTerms& terms);
 
-}  // namespace toothpath::face
+}  // namespace toothpath::milled

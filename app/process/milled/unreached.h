@@ -9,7 +9,7 @@
 #include "app/report/finding.h"
 #include "cam/proof/verification.h"
 
-namespace toothpath::face {
+namespace toothpath::milled {
 
 /// What was left stands beside the verdict ("verified, root not finished"); report.json tells it in any case.
 [[nodiscard]] report::Finding unreached_of(const proof::UnreachedResult& unreached);
@@ -18,4 +18,4 @@ namespace toothpath::face {
 void judge_unreached(const proof::UnreachedResult& unreached, std::optional<double> limit_mm,
                      std::vector<std::string>& reasons);
 
-}  // namespace toothpath::face
+}  // namespace toothpath::milled

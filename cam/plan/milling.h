@@ -1,4 +1,4 @@
-// Plans every operation of a face gear job for one tooth space, in the order of the job: each with the planner that its
+// Plans every operation of a milling job for one tooth space, in the order of the job: each with the planner that its
 // type asks for.
 #pragma once
 
@@ -19,7 +19,7 @@ struct Options : ball::PlanOptions {
   int simultaneous_axes = 5;          ///< that the control interpolates in a block: X, Y, Z and the rotaries that turn
 };
 
-struct FaceGearPlan {
+struct MillingPlan {
   std::vector<path::ClPath> paths;                   ///< one an operation
   std::vector<ball::OperationPlan> operations;       ///< the same
   std::vector<std::optional<line::LinePlan>> lines;  ///< of line milling, without its path; nothing for the others
@@ -30,7 +30,7 @@ struct FaceGearPlan {
 using Progress = std::function<void(const std::string&)>;
 
 /// Refused: what the planner of an operation refuses, with the key of the job that it belongs to.
-[[nodiscard]] Expected<FaceGearPlan, ball::PlanRefusal> plan_face_gear(
+[[nodiscard]] Expected<MillingPlan, ball::PlanRefusal> plan_milling(
     const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
     const std::vector<path::MillingOperation>& operations, const Options& options, const Progress& progress = {});
 

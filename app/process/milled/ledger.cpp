@@ -1,4 +1,4 @@
-#include "app/process/face/ledger.h"
+#include "app/process/milled/ledger.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "app/process/ledger_sources.h"
 #include "geometry/base/tolerances.h"
 
-namespace toothpath::face {
+namespace toothpath::milled {
 namespace {
 
 constexpr double kPivotShare = 1.8;  // of a pivot error, in tooth thickness: docs/line_milling.md
@@ -172,4 +172,4 @@ std::vector<proof::LedgerEntry> ledger(const MilledGear& milled, const joints::A
   return out;
 }
 
-}  // namespace toothpath::face
+}  // namespace toothpath::milled

@@ -1,0 +1,13 @@
+// The turned body of a face gear, as its milling asks for it.
+#pragma once
+
+#include "app/process/milled/body.h"
+#include "geometry/face_gear/gear.h"
+
+namespace toothpath::face {
+
+/// Links keep clear of a cylinder from the underside of the mesh to the top of the stock, rapids of the rings. The gear
+/// must outlive it.
+[[nodiscard]] milled::GearBody body_of(const face_gear::FaceGear& gear);
+
+}  // namespace toothpath::face

@@ -1,0 +1,148 @@
+#include "app/process/milled/milling.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "app/process/milled/ledger.h"
+#include "app/process/proof_limits.h"
+#include "cam/ball/plan.h"
+#include "cam/cut/swept_tool.h"
+#include "cam/plan/first_ball.h"
+#include "postproc/joints/pole.h"
+
+namespace toothpath::milled {
+namespace {
+
+constexpr double kLinkFeed = 6000;   // mm/min: of moves under feed through air, where the machine is no slower
+constexpr double kSmallFirst = 0.7;  // of what the space admits: a first roughing tool that is told
+constexpr double kBiasShare = 0.4;   // of the rounding, taken up by the poses: the rest is counted
+
+cut::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {
+  cut::CutSurfaceOptions options;
+  if (grid.rows > 0) options.flank_rows = grid.rows;
+  if (grid.columns > 0) options.columns = grid.columns;
+  return options;
+}
+
+plan::Options plan_options(const proof::ProofLimits& limits, const machines::Machine& machine, double outer_radius_mm) {
+  plan::Options options;
+  options.limits = limits;
+  options.link_feed_mm_min = std::min(machine.max_cutting_feed, kLinkFeed);
+  options.simultaneous_axes = machine.max_simultaneous_axes;
+  options.line_bias_mm = line::kBias + kBiasShare * process::word_rounding(machine, outer_radius_mm);
+  // `tilt` keeps what it asks between two records, too, where the axis dips by less than this margin.
+  if (machine.post.pole == machines::PoleOption::tilt)
+    options.least_tilt_rad =
+        std::max(options.least_tilt_rad, machine.post.pole_angle_rad.value_or(joints::kLeastPoleTilt) + 1e-3);
+  options.pole_is_passed =
+      machine.post.pole != machines::PoleOption::error && machine.post.pole != machines::PoleOption::tilt;
+  return options;
+}
+
+void add_side_passes(const line::LinePlan& plan, int operation, std::vector<report::PassReport>& out) {
+  for (const auto& pass : plan.passes) {
+    report::SidePass side{pass.side, pass.strip, to_string(plan.rotaries), pass.left_mm, pass.contact_top_mm, {}};
+    for (const auto& s : pass.stations) side.stations.push_back({s.r, s.lean, s.tilt, s.misfit});
+    std::string name = fmt::format("flank {:+d}", pass.side);
+    if (plan.strips > 1) name += fmt::format(", strip {}", pass.strip);
+    const int number = (pass.side > 0 ? 0 : plan.strips) + pass.strip;
+    out.push_back(
+        {operation, pass.zone, number, std::move(name), true, pass.contact_mm, pass.records.size(), std::move(side)});
+  }
+}
+
+/// Passes that end before their flank does, and why.
+std::vector<std::string> shortened_passes(const plan::MillingPlan& plan) {
+  std::vector<std::string> out;
+  for (std::size_t n = 0; n < plan.lines.size(); ++n) {
+    if (!plan.lines[n]) continue;
+    for (const line::LinePass& pass : plan.lines[n]->passes) {
+      const auto& b = pass.shortened_by;
+      if (!b) continue;
+      std::string text = fmt::format(
+          "operation {}: the pass on zone {}, flank {:+d} ends early: beyond its end the {} has a gap of {:.4f} mm to "
+          "the {}, {:.4f} mm is the least; a wider groove, or a mill of smaller diameter or half_angle",
+          n, pass.zone, pass.side, b->body, b->gap_mm, b->patch, b->least_mm);
+      out.push_back(std::move(text));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Milling::Milling(const job::Job& job, const machines::Machine& machine, analytic::GearDistance part, GearBody body,
+                 const proof::ProofLimits& limits, const process::FlankGrid& grid)
+    : job_(job),
+      limits_(limits),
+      options_(plan_options(limits, machine, body.outer_radius_mm)),
+      part_(std::move(part)),
+      body_(std::move(body)),
+      gouge_(part_, job.tools, {limits, body_.blank_top_mm}),
+      check_(job, machine, limits, part_, body_, gouge_, surface_options(grid)) {}
+
+Status Milling::plan(app::StageClock& clock, app::Progress& progress) {
+  plan::Options options = options_;
+  options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
+  auto planned = clock.run("plan", [&] {
+    return plan::plan_milling(part_, job_.tools, job_.operations, options,
+                                [&](const std::string& text) { progress.show(text); });
+  });
+  if (auto* refusal = planned.refused()) return process::located(job_, refusal->key, std::move(refusal->diagnostic));
+  plan_ = std::move(planned).value();
+  check_.shortened = shortened_passes(plan_);
+  return Ok{};
+}
+
+std::vector<const path::ClPath*> Milling::paths() const {
+  std::vector<const path::ClPath*> out;
+  for (const auto& path : plan_.paths) out.push_back(&path);
+  return out;
+}
+
+std::vector<report::PassReport> Milling::passes() const {
+  std::vector<report::PassReport> out;
+  for (std::size_t n = 0; n < plan_.lines.size(); ++n)
+    if (plan_.lines[n]) add_side_passes(*plan_.lines[n], int(n), out);
+  return out;
+}
+
+std::vector<report::EngagementReport> Milling::engagement() const {
+  std::vector<report::EngagementReport> out;
+  for (const plan::EngagementTrack& t : plan_.engagement)
+    out.push_back(
+        {t.operation, t.way_mm, t.engaged_rad, t.chip_mm, t.feed_mm_min, t.step_over_mm, t.beside_rad, t.opening_mm});
+  return out;
+}
+
+std::vector<std::string> Milling::advice() const {
+  if (plan_.paths.empty() || job_.operations.front().type != path::OperationType::roughing) return {};
+  const path::MillingOperation& first = job_.operations.front();
+  const tool::ToolAssembly& tool = job_.tools[std::size_t(first.tool)];
+  const double admitted = plan::first_ball_mm(part_, first.allowance_mm, ball::reach_of(job_.tools));
+  if (tool.diameter_mm >= kSmallFirst * admitted) return {};
+  return {
+      fmt::format("operation 0 roughs with tool {}, {:g} mm; the upper half of the tooth spaces, where most of "
+                  "the material is, admits a ball of {:.2f} mm",
+                  tool.number, tool.diameter_mm, admitted)};
+}
+
+rest::Excess Milling::roughed() const {
+  std::vector<rest::Excess> removed;
+  for (const path::ClPath& path : plan_.paths) {
+    if (job_.operations[std::size_t(path.operation)].type != roughing()) continue;
+    const auto one =
+        std::make_shared<const cut::Removed>(analytic::GougeCheck::motions_of(path),
+                                             tool::proof_tool(job_.tools[std::size_t(path.tool)]), part_.part().highest_z());
+    removed.emplace_back([one](const Vec3& p, double cap) { return one->excess(p, cap); });
+  }
+  return rest::excess_of(std::move(removed));
+}
+
+std::vector<proof::LedgerEntry> Milling::ledger(const joints::AxisProgram& program, const process::ProgramProof& proof,
+                                                double blend_mm) const {
+  return milled::ledger({part_, plan_, job_.tools, job_.operations, check_.surface}, program, proof,
+                        {blend_mm, limits_.proof_mm, options_.line_bias_mm, *job_.setup});
+}
+
+}  // namespace toothpath::milled
