@@ -230,6 +230,21 @@ TEST_P(ToothSpaces, NamesAreFree) {
   }
 }
 
+// One tooth gets a cut more than the others: right through what stands, three layers deep. Nothing is gouged by it.
+TEST_P(ToothSpaces, WhatOneToothTakesOffIsJudgedThere) {
+  const auto [first, last] = pass(links(0, 5).front());
+  const std::string start =
+      std::regex_replace(lines_[links(0, 5).front()], std::regex(".*(X[-0-9.]+ Y[-0-9.]+).*"), "$1");
+  const double z = std::stod(lines_[first - 1].substr(1));
+  Lines more{fmt::format("Z{:.3f} F400", z - 1.4)};
+  more.insert(more.end(), lines_.begin() + std::ptrdiff_t(first), lines_.begin() + std::ptrdiff_t(last));
+  more.insert(more.end(), {fmt::format("Z{:.3f} F3000", z), start + " F150"});
+  lines_.insert(lines_.begin() + std::ptrdiff_t(first), more.begin(), more.end());
+  const Verdict found = check(lines_);
+  expect_told(found, {"tooth 5: operation 0: at line [0-9]+ the chip reaches [0-9.]+ mm or more above the tip"});
+  EXPECT_EQ(found.reasons.find("gouge"), std::string::npos) << found.reasons;
+}
+
 // Loops whose teeth are not quite turned copies: all cuts of a space count, however the text comes to it.
 class LoopsThatDiffer : public testing::Test {
  protected:
