@@ -222,9 +222,13 @@ double MilledCheck::motion_tolerance() const { return kBallMotionTolerance; }
 
 double MilledCheck::pitches_from_space_0(const Vec3& tip) const {
   const double s = part_.space(0).outline().chart.along(tip);
+  const auto beside = [&](int zone) {
+    const tooth_space::Outline& ring = part_.space(zone).outline();
+    return std::max({ring.s_from - s, s - ring.s_to, 0.0});
+  };
   int zone = 0;
-  for (int k = 1; k < part_.zones(); ++k)  // from the middle of a groove on the next ring counts
-    if (2 * s > part_.space(k - 1).outline().s_to + part_.space(k).outline().s_from) zone = k;
+  for (int k = 1; k < part_.zones(); ++k)
+    if (beside(k) < beside(zone)) zone = k;
   return (std::atan2(tip.y(), tip.x()) - part_.space_azimuth(zone, s)) / part_.space(zone).outline().pitch;
 }
 
