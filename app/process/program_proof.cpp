@@ -308,17 +308,21 @@ Status follow_whole(const ProgramText& program, GearCheck& gear, ProgramProof& p
                       std::span(proof.motions).subspan(before));
     gear.meet(trace, std::span(proof.motions).subspan(before), proof.control);
   }
-  if (proof.read.copies.copies) return Ok{};
+  // Teeth that are kept although they are copies are followed beside their first one: each is proven, at little cost.
+  if (proof.read.copies.copies) {
+    if (program.job.verify.all_teeth)
+      clock.run("compare the teeth", [&] { proof.likes = like_motions(proof.motions, gear.teeth()); });
+    return Ok{};
+  }
   keep_first_teeth(proof.read);  // what else there is to say of them is in the motions
   const auto tolerance = program.job.verify.all_teeth ? std::nullopt : std::optional(copy_tolerance(program.job));
   clock.run("compare the teeth", [&] {
     proof.other_teeth = cuts_of_other_teeth(proof.motions, gear.teeth(), tolerance,
                                             [&](const path::ToolMotion& m) { return gear.may_cut(m); });
   });
-  if (program.job.verify.all_teeth) return Ok{};
   // Teeth that are written out one by one: what is the first tooth again, turned, need not be proven again.
   clock.run("compare the teeth", [&] {
-    proof.motions = without_copies(std::move(proof.motions), gear.teeth(), copy_tolerance(program.job));
+    if (tolerance) proof.motions = without_copies(std::move(proof.motions), gear.teeth(), *tolerance);
     proof.likes = like_motions(proof.motions, gear.teeth());
   });
   return Ok{};

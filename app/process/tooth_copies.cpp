@@ -312,15 +312,14 @@ ToothByTooth::Seen ToothByTooth::seen(std::span<const path::ToolMotion> motions)
   out.stated = stated_deviation(motions);
   const First& first = operations_.at(out.operation);
   const double turn = back_to_first(out.tooth, first.tooth, teeth_);
-  if (tolerance_mm_) {
-    proof::Beside beside(firsts_, first.cuts, turn);
-    for (std::size_t k = 0; k < motions.size() && !out.like; ++k)
-      out.like = !motions[k].rapid && beside.next(motions[k], std::uint32_t(k));
+  proof::Beside beside(firsts_, first.cuts, turn);
+  for (std::size_t k = 0; k < motions.size() && !out.like; ++k)
+    out.like = !motions[k].rapid && beside.next(motions[k], std::uint32_t(k));
+  if (tolerance_mm_)
     if (const auto shift = shift_of({firsts_, motions, turn}, first.blocks, blocks, *tolerance_mm_)) {
       for (const Block& block : blocks) out.blocks.push_back(farther(most_of(motions, block), *shift));
       return out;
     }
-  }
   out.again = proof::cuts_again(first_teeth_.at(out.operation), motions, -turn);
   return out;
 }
@@ -385,7 +384,7 @@ bool ToothByTooth::left_out(int tooth) const { return copies_ && copies_->contai
 std::vector<proof::LikeMotion> ToothByTooth::likes(std::span<const path::ToolMotion> motions) const {
   std::vector<proof::LikeMotion> found;
   const path::ToolMotion* cut = first_cut(motions);
-  if (!tolerance_mm_ || !cut) return found;
+  if (!cut) return found;
   const First& first = operations_.at(cut->operation);
   proof::Beside beside(firsts_, first.cuts, back_to_first(cut->tooth, first.tooth, teeth_));
   for (std::size_t k = 0; k < motions.size(); ++k)

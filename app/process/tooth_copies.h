@@ -65,7 +65,7 @@ struct Stated {
 /// every operation. All teeth are seen once before anything is said of them.
 class ToothByTooth {
  public:
-  /// @param copy_tolerance_mm  none: all teeth are proven by themselves
+  /// @param copy_tolerance_mm  none: no tooth is left out as a copy
   ToothByTooth(int teeth, std::optional<double> copy_tolerance_mm, proof::FirstTooth::MayCut may_cut);
   ToothByTooth(const ToothByTooth&) = delete;
   ToothByTooth& operator=(const ToothByTooth&) = delete;

@@ -142,26 +142,6 @@ TEST(LineRuns, OneAndTwoThreadsGiveTheSameProgram) {
   }
 }
 
-// The proof that shares what it knows of the first tooth says no less, and is no looser, than that of every tooth by
-// itself.
-TEST(LineRuns, LikeTeethAreProvenAsEachByItself) {
-  const TestDir dir;
-  const std::string job = off_the_axis(dir, kLineGear + small_ball("scallop = 0.02\nchord_tolerance = 0.002"));
-  write_file(dir / "shared.toml", job);
-  write_file(dir / "each.toml", replaced(job, "gouge_tolerance = 0.002", "gouge_tolerance = 0.002\nteeth = \"all\""));
-  for (const std::string name : {"shared", "each"}) {
-    const auto run = run_program({"run", dir / (name + ".toml"), "--out", dir / name});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-  }
-  EXPECT_EQ(file_text(dir / "shared/program.ngc"), file_text(dir / "each/program.ngc"));
-  const auto shared = findings_in(dir, "shared"), each = findings_in(dir, "each");
-  const auto um = [](const nlohmann::json& report, const char* what) { return report["gouge_um"][what].get<double>(); };
-  EXPECT_GE(um(shared, "bound"), um(each, "measured"));
-  EXPECT_LE(um(shared, "bound"), um(each, "bound") + 0.2);
-  EXPECT_NEAR(um(shared, "measured"), um(each, "measured"), 0.2);
-  EXPECT_NEAR(shared["clearance"]["least"].get<double>(), each["clearance"]["least"].get<double>(), 0.02);
-}
-
 /// The program of `job` with a Z of its last tooth 0.1 mm lower, and the line of that word.
 std::pair<std::string, int> with_a_deep_cut(std::string text) {
   const std::size_t tooth = text.rfind("(TOOTH "), feed = text.find("G93", tooth),

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -249,7 +250,7 @@ struct Kept {
   std::vector<process::ToothCut> others;
   int times = 0;  ///< that all teeth were seen
 };
-Kept one_by_one(const std::vector<path::ToolMotion>& motions) {
+Kept one_by_one(const std::vector<path::ToolMotion>& motions, std::optional<double> tolerance_mm) {
   std::vector<std::vector<path::ToolMotion>> stretches;
   for (const auto& m : motions) {
     if (stretches.empty() || stretches.back().back().operation != m.operation ||
@@ -260,7 +261,7 @@ Kept one_by_one(const std::vector<path::ToolMotion>& motions) {
   std::set<int> begun;
   std::vector<bool> first;
   for (const auto& stretch : stretches) first.push_back(begun.insert(stretch.front().operation).second);
-  process::ToothByTooth teeth(kTeeth, kTolerance, [](const auto&) { return true; });
+  process::ToothByTooth teeth(kTeeth, tolerance_mm, [](const auto&) { return true; });
   Kept kept;
   do {
     for (std::size_t n = 0; n < stretches.size(); ++n)
@@ -294,10 +295,11 @@ Kept one_by_one(const std::vector<path::ToolMotion>& motions) {
 }
 
 /// As of the whole program at once.
-void expect_as_a_whole(const std::vector<path::ToolMotion>& motions, int times, const char* what) {
-  const Kept kept = one_by_one(motions);
+void expect_as_a_whole(const std::vector<path::ToolMotion>& motions, int times, const char* what,
+                       std::optional<double> tolerance_mm = kTolerance) {
+  const Kept kept = one_by_one(motions, tolerance_mm);
   EXPECT_EQ(kept.times, times) << what;
-  const auto whole = process::without_copies(motions, kTeeth, kTolerance);
+  const auto whole = tolerance_mm ? process::without_copies(motions, kTeeth, *tolerance_mm) : motions;
   ASSERT_EQ(kept.motions.size(), whole.size()) << what;
   for (std::size_t k = 0; k < whole.size(); ++k) {
     ASSERT_EQ(kept.motions[k].line, whole[k].line) << what;
@@ -308,7 +310,7 @@ void expect_as_a_whole(const std::vector<path::ToolMotion>& motions, int times, 
   const auto stated = process::stated_deviation(whole);
   EXPECT_EQ(kept.stated.tip_mm, stated.tip_mm) << what;
   EXPECT_EQ(kept.stated.axis_rad, stated.axis_rad) << what;
-  const auto others = process::cuts_of_other_teeth(motions, kTeeth, kTolerance, [](const auto&) { return true; });
+  const auto others = process::cuts_of_other_teeth(motions, kTeeth, tolerance_mm, [](const auto&) { return true; });
   ASSERT_EQ(kept.others.size(), others.size()) << what;
   for (std::size_t k = 0; k < others.size(); ++k) {
     ASSERT_EQ(kept.others[k].operation, others[k].operation) << what;
@@ -342,6 +344,7 @@ TEST(ToothByTooth, SaysWhatIsSaidOfTheWholeProgram) {
   const auto lifted = [](path::ToolMotion& m) { m.tip_to.z() += 0.01, m.tip_from.z() += 0.01; };
   expect_as_a_whole(program(3, 3), 1, "all are copies");
   expect_as_a_whole(program(1, 7), 1, "one operation");
+  expect_as_a_whole(program(3, 3), 1, "no tooth is left out", std::nullopt);
   expect_as_a_whole(changed([](const auto& m) { return m.tooth > 0; }, lifted), 1, "none is a copy");
   expect_as_a_whole(changed([](const auto& m) { return m.tooth == 5; }, lifted), 1, "one is none");
   expect_as_a_whole(changed([](const auto& m) { return m.tooth == 5 && m.operation == 1; }, lifted), 2,
@@ -352,6 +355,14 @@ TEST(ToothByTooth, SaysWhatIsSaidOfTheWholeProgram) {
   expect_as_a_whole(changed([](const auto& m) { return m.line % 1000 == 1 || (m.tooth == 3 && m.operation == 0); },
                             [](path::ToolMotion& m) { m.rapid = true; }),
                     2, "rapids, and a tooth that is not cut");
+}
+
+// Where no copy is left out every cut of the later teeth is followed beside the first one, and none is proven anew.
+TEST(ToothByTooth, AllOfThemAreFollowedBesideTheFirst) {
+  const Kept kept = one_by_one(program(2, 2), std::nullopt);
+  EXPECT_EQ(kept.motions.size(), program(2, 2).size());
+  EXPECT_EQ(kept.likes.size(), kept.motions.size() / kTeeth * (kTeeth - 1));
+  for (const auto& like : kept.likes) EXPECT_LT(like.tip_mm, 1e-5 * kTeeth + 1e-9);  // what the motions state
 }
 
 }  // namespace

@@ -230,6 +230,21 @@ TEST_P(ToothSpaces, NamesAreFree) {
   }
 }
 
+// One tooth gets a cut more than the others: right through what stands, three layers deep. Nothing is gouged by it.
+TEST_P(ToothSpaces, WhatOneToothTakesOffIsJudgedThere) {
+  const auto [first, last] = pass(links(0, 5).front());
+  const std::string start =
+      std::regex_replace(lines_[links(0, 5).front()], std::regex(".*(X[-0-9.]+ Y[-0-9.]+).*"), "$1");
+  const double z = std::stod(lines_[first - 1].substr(1));
+  Lines more{fmt::format("Z{:.3f} F400", z - 1.4)};
+  more.insert(more.end(), lines_.begin() + std::ptrdiff_t(first), lines_.begin() + std::ptrdiff_t(last));
+  more.insert(more.end(), {fmt::format("Z{:.3f} F3000", z), start + " F150"});
+  lines_.insert(lines_.begin() + std::ptrdiff_t(first), more.begin(), more.end());
+  const Verdict found = check(lines_);
+  expect_told(found, {"tooth 5: operation 0: at line [0-9]+ the chip reaches [0-9.]+ mm or more above the tip"});
+  EXPECT_EQ(found.reasons.find("gouge"), std::string::npos) << found.reasons;
+}
+
 // Loops whose teeth are not quite turned copies: all cuts of a space count, however the text comes to it.
 class LoopsThatDiffer : public testing::Test {
  protected:
@@ -279,6 +294,28 @@ TEST(PassesThatAreMissing, AreFoundByTheirLoad) {
     expect_told(found, {"operation 0: at line [0-9]+ .* with a chip of [0-9.]+ times the feed"});
     EXPECT_EQ(found.reasons.find("left material"), std::string::npos) << found.reasons;
   }
+}
+
+// Every tooth is proven, beside the first one: sixty of them cost a few times what one costs.
+TEST(AllTeeth, CostAFewTimesWhatOneCosts) {
+  const TestDir dir;
+  const std::string job = file_text(TOOTHPATH_SOURCE_DIR "/samples/spur_quick.toml");
+  nlohmann::json reports[2];
+  for (const bool all : {false, true}) {
+    write_file(dir / "job.toml", all ? job + "teeth = \"all\"\n" : job);
+    commands::RunRequest request;
+    request.job_file = dir / "job.toml";
+    request.out_dir = dir / (all ? "all" : "one");
+    request.quiet = true;
+    ASSERT_EQ(commands::run_job(request).exit_code, app::ExitCode::ok);
+    reports[all] = nlohmann::json::parse(file_text(request.out_dir + "/report.json"));
+  }
+  const auto seconds = [](const nlohmann::json& report) {
+    return report["stages"]["proof of the program"].get<double>();
+  };
+  EXPECT_LT(seconds(reports[1]), 30 * seconds(reports[0]));  // 8 times; each tooth by itself: 60 times
+  for (const char* what : {"measured", "bound"})
+    EXPECT_NEAR(reports[1]["gouge_um"][what].get<double>(), reports[0]["gouge_um"][what].get<double>(), 0.05) << what;
 }
 
 // A decimal point is lost, and an axis goes for hundreds of metres: it is told with its line, and nothing else is

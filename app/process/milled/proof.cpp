@@ -42,20 +42,22 @@ void judge_gouge(const proof::GougeResult& gouge, const analytic::GougeCheck& ch
   if (reasons.empty()) reasons.push_back("the gouge check does not pass");
 }
 
+using SeeMotions =
+    std::function<void(const std::vector<path::ToolMotion>& motions, std::span<const proof::LikeMotion> likes)>;
+
 /// Teeth that are followed one by one come twice: what is like no other, then what is like that.
 /// @param see  gets all motions, tooth by tooth where they come so
 proof::GougeResult gouge_of(const analytic::GougeCheck& check, process::ProgramProof& program,
-                            const std::vector<int>& tool_of_operation,
-                            const std::function<void(const std::vector<path::ToolMotion>& motions)>& see) {
+                            const std::vector<int>& tool_of_operation, const SeeMotions& see) {
   if (!program.each_tooth) {
-    see(program.motions);
+    see(program.motions, program.likes);
     return check.check(program.motions, tool_of_operation, program.likes);
   }
   const WorkShare all{double(program.tooth_motions)};
   analytic::GougeStream stream(check, tool_of_operation, program.likes_follow);
   std::uint32_t firsts = 0;
   Status made = program.each_tooth(process::TeethWanted::whole, [&](auto&& motions, auto likes, bool first) {
-    if (!first) see(motions);
+    if (!first) see(motions, likes);
     auto like = likes.begin();
     for (std::size_t k = 0; k < motions.size(); ++k) {
       if (like != likes.end() && like->motion == k) ++like;
@@ -252,7 +254,8 @@ bool MilledCheck::measures(int operation) const {
 /// Later teeth that are no copies of the first one, by what may stand on them.
 class MilledCheck::OtherTeeth {
  public:
-  OtherTeeth(const process::ProgramProof& program, const MilledCheck& check) : check_(check) {
+  OtherTeeth(const process::ProgramProof& program, const MilledCheck& check)
+      : check_(check), firsts_(process::first_teeth(program.motions)), loads_(program.others_text) {
     for (const process::ToothCut& other : program.other_teeth) {
       if (other.cuts_nothing() || !check.measures(other.operation)) continue;
       double& away = away_[other.tooth];
@@ -269,7 +272,8 @@ class MilledCheck::OtherTeeth {
     for (const auto& [tooth, away] : away_)
       if (!unlike_.contains(tooth) && !within(surface, away)) near_.emplace(tooth, cut::LeftOnTooth(surface.watched));
   }
-  void see(const std::vector<path::ToolMotion>& motions) {
+  void see(const std::vector<path::ToolMotion>& motions, std::span<const proof::LikeMotion> likes) {
+    if (loads_) see_what_is_like_none(motions, likes);
     if (near_.empty()) return;
     std::map<std::pair<int, int>, std::vector<path::ToolMotion>> cuts;  // by tooth and operation
     for (const path::ToolMotion& m : motions)
@@ -279,6 +283,8 @@ class MilledCheck::OtherTeeth {
       near_.at(key.first).add(in_space_0(std::move(own), check_.teeth()), check_.tool_of(key.second),
                               check_.part_.part().highest_z());
   }
+  /// Those with cuts that the first tooth does not have: what they take off is not what it takes off there.
+  [[nodiscard]] const std::set<int>& loaded_otherwise() const { return otherwise_; }
   /// Those that must be measured by themselves, and what is missing there; empty: nothing is.
   [[nodiscard]] std::map<int, std::string> unlike() const {
     std::map<int, std::string> out = unlike_;
@@ -296,7 +302,20 @@ class MilledCheck::OtherTeeth {
     return true;
   }
 
+  void see_what_is_like_none(const std::vector<path::ToolMotion>& motions, std::span<const proof::LikeMotion> likes) {
+    auto like = likes.begin();
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      const path::ToolMotion& m = motions[k];
+      if (like != likes.end() && like->motion == k) ++like;
+      else if (!m.rapid && m.tooth != firsts_.at(m.operation) && !otherwise_.contains(m.tooth) && check_.may_cut(m))
+        otherwise_.insert(m.tooth);
+    }
+  }
+
   const MilledCheck& check_;
+  std::map<int, int> firsts_;  // tooth of every operation
+  bool loads_;
+  std::set<int> otherwise_;
   std::map<int, double> away_;
   std::map<int, std::string> unlike_;
   std::map<int, cut::LeftOnTooth> near_;
@@ -329,7 +348,7 @@ void MilledCheck::judge_unlike(process::ProgramProof& program, const OtherTeeth&
 }
 
 /// What an operation takes off at a time, in what those before it leave: nobody who wrote the text by hand sees that.
-void MilledCheck::judge_load(std::span<const path::ToolMotion> firsts, std::vector<std::string>& reasons) const {
+void MilledCheck::judge_load(std::span<const path::ToolMotion> one_space, std::vector<std::string>& reasons) const {
   const readback::AskedConditions asked = process::asked_conditions(job_);
   std::vector<std::unique_ptr<cut::Removed>> removed;
   std::vector<const cut::Removed*> before;
@@ -337,7 +356,7 @@ void MilledCheck::judge_load(std::span<const path::ToolMotion> firsts, std::vect
     const path::MillingOperation& op = job_.operations[n];
     const tool::ToolAssembly& tool = job_.tools[std::size_t(op.tool)];
     std::vector<path::ToolMotion> motions;
-    for (const path::ToolMotion& m : firsts)
+    for (const path::ToolMotion& m : one_space)
       if (m.operation == int(n)) motions.push_back(m);
     if (motions.empty()) return;  // told elsewhere; what the next ones meet is not known
     const tool::Profile mill = tool::profile_of(tool);
@@ -366,6 +385,18 @@ void MilledCheck::judge_load(std::span<const path::ToolMotion> firsts, std::vect
   }
 }
 
+void MilledCheck::judge_other_loads(process::ProgramProof& program, const std::set<int>& teeth) const {
+  std::size_t refused = 0;
+  for (auto& [tooth, cuts] : cuts_of(program, teeth)) {
+    if (refused > kTeethTold) break;  // it is not verified at any rate
+    std::vector<std::string> reasons;
+    judge_load(in_space_0(std::move(cuts), this->teeth()), reasons);
+    if (!reasons.empty() && ++refused <= kTeethTold)
+      for (const std::string& reason : reasons) program.reasons.push_back(fmt::format("tooth {}: {}", tooth, reason));
+  }
+  if (refused > kTeethTold) program.reasons.emplace_back("so it is with more teeth");
+}
+
 void MilledCheck::meet(const readback::OperationTrace&, std::span<const path::ToolMotion>, const readback::NcControl&) {
 }  // all that is said of the gear holds for the teeth that are proven
 
@@ -381,11 +412,13 @@ void MilledCheck::judge(process::ProgramProof& program, app::StageClock& clock) 
   if (program.others_text) clock.run("engagement", [&] { judge_load(firsts, program.reasons); });
   others.measured(surface);
   program.gouge = clock.run("proof of the program", [&] {
-    return gouge_of(check_, program, tool_of_operation, [&](const auto& motions) { others.see(motions); });
+    return gouge_of(check_, program, tool_of_operation,
+                    [&](const auto& motions, auto likes) { others.see(motions, likes); });
   });
   judge_gouge(program.gouge, check_, limits_.gouge_mm, program.reasons);
   judge_surface(surface, job_, limits_, program.reasons);
   clock.run("cut surface", [&] { judge_unlike(program, others); });
+  if (program.others_text) clock.run("engagement", [&] { judge_other_loads(program, others.loaded_otherwise()); });
   if (!program.reasons.empty()) program.reasons.insert(program.reasons.end(), shortened.begin(), shortened.end());
   if (!program.reasons.empty())
     if (const auto coarse = process::coarse_words(job_, machine_, body_.outer_radius_mm))

@@ -2,6 +2,8 @@
 // rapids about the blank, the cut surface.
 #pragma once
 
+#include <set>
+
 #include "app/process/milled/body.h"
 #include "app/process/program_proof.h"
 #include "cam/analytic/gouge_check.h"
@@ -39,7 +41,8 @@ class MilledCheck final : public process::GearCheck {
   class OtherTeeth;
   [[nodiscard]] const tool::ProofTool& tool_of(int operation) const;
   void judge_unlike(process::ProgramProof& program, const OtherTeeth& others);
-  void judge_load(std::span<const path::ToolMotion> firsts, std::vector<std::string>& reasons) const;
+  void judge_load(std::span<const path::ToolMotion> one_space, std::vector<std::string>& reasons) const;
+  void judge_other_loads(process::ProgramProof& program, const std::set<int>& teeth) const;
 
   const job::Job& job_;
   const machines::Machine& machine_;

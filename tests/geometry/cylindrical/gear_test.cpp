@@ -4,6 +4,7 @@
 #include <functional>
 #include <tuple>
 
+#include "geometry/cylindrical/part.h"
 #include "geometry/tooth_space/curvature.h"
 #include "tests/geometry/cylindrical/samples.h"
 #include "tests/support/sample_gears.h"
@@ -317,6 +318,28 @@ TEST(CylindricalGear, WhatWouldDoDoes) {
     const auto limits = limits_of(cylindrical::InvoluteSpace(cylindrical::InvoluteKernel<double>(g, g.zones[0])));
     EXPECT_NEAR(limits.top_land_mm, 0.2 * g.module_mm, 0.01 * g.module_mm);
   }
+}
+
+/// Zones as the job counts them, with rising z; a turned blank with its groove.
+TEST(CylindricalPart, IsTheTurnedBlankWithItsZones) {
+  const auto part = cylindrical::part_of(made(double_helical_pinion()));
+  ASSERT_EQ(part->zones(), 2);
+  EXPECT_LT(part->space(0).outline().s_to, 26);
+  EXPECT_GT(part->space(0).outline().s_from, part->space(1).outline().s_to);  // s = -z
+  EXPECT_EQ(part->blank_top(), 80);
+  EXPECT_EQ(part->lowest_root(), 68.75);
+  ASSERT_TRUE(part->groove_floor());
+  EXPECT_EQ(*part->groove_floor(), 66);
+  for (const auto& [r, z, held] : {std::tuple{79.9, 10.0, true},
+                                   {80.1, 10.0, false},
+                                   {79.9, 25.1, false},
+                                   {79.9, -25.1, false},
+                                   {66.1, 0.0, false},
+                                   {65.9, 0.0, true},
+                                   {30.1, 0.0, true},
+                                   {29.9, -20.0, false}})
+    EXPECT_EQ(part->in_blank(Vec3(0, -r, z)), held) << r << ' ' << z;
+  EXPECT_FALSE(cylindrical::part_of(made(shifted_spur()))->groove_floor());
 }
 
 }  // namespace

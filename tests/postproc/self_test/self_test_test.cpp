@@ -165,6 +165,7 @@ TEST(SelfTest, AWrongGrantOfTheRotaryOffsetIsSeen) {
 // The tip stands above the table's face, wherever the file names the point of the axis.
 TEST(SelfTest, StandsAboveTheFaceOfTheTable) {
   machines::Machine m = shipped("xyzac_trt.toml");
+  m.table_face_mm.reset();
   const auto before = self_test::plan_self_test(m);
   ASSERT_TRUE(before) << before.error().message;
   m.table_face_mm = m.chain.table[0].point_mm.z();
@@ -178,6 +179,21 @@ TEST(SelfTest, StandsAboveTheFaceOfTheTable) {
   ASSERT_FALSE(none);
   EXPECT_NE(none.error().message.find("axes.C.point: if it is not, state limits.table_face"), std::string::npos)
       << none.error().message;
+}
+
+// A file that states the bodies of its machine has its table where its plate is.
+TEST(SelfTest, ShippedTablesAreWhereTheirPlatesAre) {
+  int plates = 0;
+  for (const char* file : kMachines) {
+    const machines::Machine m = shipped(file);
+    if (m.chain.table.empty()) continue;
+    const Vec3 middle = m.table_middle_mm();
+    const auto top = m.top_under(Vec3(middle.x(), middle.y(), INFINITY));
+    if (!top) continue;
+    EXPECT_EQ(*top, middle.z()) << file;
+    ++plates;
+  }
+  EXPECT_GE(plates, 5);
 }
 
 // C in [0, 360]: zero itself is nearer to the limit than the margin.
