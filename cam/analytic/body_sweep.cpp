@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cam/analytic/body_patches.h"
-#include "cam/analytic/roof.h"
+#include "cam/proof/roof.h"
 #include "cam/path/motion_blend.h"
 #include "geometry/base/angle.h"
 
@@ -573,7 +573,7 @@ class Sweep {
   Course course_;
   bool turns_;
   double turn_rate_;
-  Roof roof_;
+  proof::Roof roof_;
   View half_way_;
   double turned_;  // from half way on
   std::vector<Target> targets_;

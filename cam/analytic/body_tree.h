@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "cam/analytic/gear_distance.h"
-#include "cam/analytic/roof.h"
+#include "cam/proof/roof.h"
 #include "cam/tool/body.h"
 
 namespace toothpath::analytic {
@@ -66,7 +66,7 @@ class BodyTree {
   [[nodiscard]] double least(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double stop,
                              double resolution_mm) const;
 
-  Roof roof_;
+  proof::Roof roof_;
   double sag_, pitch_;
   std::vector<Zone> zones_;
   std::vector<std::pair<double, double>> turns_;  ///< cosine and sine of every tooth's index angle

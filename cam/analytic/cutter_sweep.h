@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "cam/analytic/gear_distance.h"
-#include "cam/analytic/roof.h"
+#include "cam/proof/roof.h"
 #include "cam/path/tool_motion.h"
 #include "cam/tool/assembly.h"
 #include "cam/tool/body.h"
@@ -95,7 +95,7 @@ class CutterSweep {
   double at(double t, double height);
 
   const GearDistance& part_;
-  Roof roof_;
+  proof::Roof roof_;
   double R_, top_, proof_, tolerance_, within_;
   std::vector<Row> rows_;
   std::vector<Known> known_;  ///< by the bits of the place

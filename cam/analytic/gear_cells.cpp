@@ -64,10 +64,11 @@ Facet on_ring(const tooth_space::ToothSpace& space, const Facet& facet, double s
   const double steep = std::sqrt(1 + slope * slope);
   const Vec3 along = chart.cosine * outwards - chart.sine * Vec3::UnitZ(),
              up = chart.sine * outwards + chart.cosine * Vec3::UnitZ();
-  const double round_s = chart.cosine * round;
-  Facet out = cut(facet, Vec3(up - slope * along), tip + std::abs(slope) * round_s + steep * sag);
-  out = cut(out, along, ring.s_to + sag);
-  return cut(out, -along, -ring.s_from + round_s + sag);
+  // s of a place lies above its part along `along` where that points outwards, below it where it points inwards.
+  const double rises = std::max(chart.cosine, 0.0) * round, falls = std::max(-chart.cosine, 0.0) * round;
+  Facet out = cut(facet, Vec3(up - slope * along), tip + std::abs(slope) * (rises + falls) + steep * sag);
+  out = cut(out, along, ring.s_to + falls + sag);
+  return cut(out, -along, -ring.s_from + rises + sag);
 }
 
 Vec2 border_place(const std::vector<Vec2>& border, double at) {
@@ -105,8 +106,8 @@ std::vector<EndQuad> end_face_quads(const EndFace& face, const std::vector<Vec2>
   std::vector<EndQuad> quads;
   const double widest = face.pitch / kStrips;
   const auto add = [&](const Vec2& a, const Vec2& b, double from, double to) {
-    // Flat quads in front of a round face: the outer one touches it in the middle, the inner one along its borders.
-    const double round = face.outer ? 1 + face.chart.cosine * (std::cos(0.5 * (b.x() - a.x())) - 1) : 1;
+    // Flat quads in front of a round face: of a hollow one they touch it along their borders, of another in the middle.
+    const double round = (face.outer ? face.chart.cosine : -face.chart.cosine) > 0 ? std::cos(0.5 * (b.x() - a.x())) : 1;
     const auto at = [&](double azimuth, double h) {
       const double r = face.chart.r(face.s_mm, h) / round;
       return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), face.chart.z(face.s_mm, h));

@@ -18,7 +18,7 @@ constexpr double kShortLine = 0.5;   // a line that spans more than this share o
 
 /// What s and h some places have.
 struct Extent {
-  double s_low, s_high, h_low, h_high;
+  tooth_space::Range s, h;
 };
 
 double beyond(double low, double high, double x) { return std::max({low - x, x - high, 0.0}); }
@@ -290,23 +290,23 @@ double GearDistance::Impl::keeps(const Extent& places, double within, const Face
   double least = within;
   for (const auto& made : rings) {
     const auto& ring = *made;
-    if (std::max(ring.s_from - places.s_high, places.s_low - ring.s_to) >= least) continue;
+    if (std::max(ring.s_from - places.s.high, places.s.low - ring.s_to) >= least) continue;
     least = facets(ring, least);
     // The facets of the ends stop below the roots, the ring goes on.
-    least = std::min(least, std::hypot(std::max(places.h_low - ring.base_mm, 0.0),
-                                       std::min(beyond(places.s_low, places.s_high, ring.s_from),
-                                                beyond(places.s_low, places.s_high, ring.s_to))));
+    least = std::min(least, std::hypot(std::max(places.h.low - ring.base_mm, 0.0),
+                                       std::min(beyond(places.s.low, places.s.high, ring.s_from),
+                                                beyond(places.s.low, places.s.high, ring.s_to))));
   }
   if (groove) {
-    const double beside = std::max({groove->from - places.s_high, places.s_low - groove->to, 0.0});
-    least = std::min(least, std::hypot(beside, beyond(places.h_low, places.h_high, groove_floor)));
+    const double beside = std::max({groove->from - places.s.high, places.s.low - groove->to, 0.0});
+    least = std::min(least, std::hypot(beside, beyond(places.h.low, places.h.high, groove_floor)));
   }
   return std::max(least, 0.0);
 }
 
 double GearDistance::surface_keeps(const Vec3& p, double within) const {
   const double s = impl_->chart.along(p), h = impl_->chart.up(p), at = toothpath::azimuth(p);
-  return impl_->keeps({s, s, h, h}, within, [&](const GearRing& ring, double least) {
+  return impl_->keeps({{s, s}, {h, h}}, within, [&](const GearRing& ring, double least) {
     const Vec3 c = impl_->to_space_0(p, std::round(impl_->spaces_from_0(ring, s, at)));
     const double lost = ring.facet_sag + kTreeError;
     for (const auto* facets : {&ring.whole_facets, &ring.border_facets, &ring.other_facets})
@@ -320,11 +320,11 @@ double GearDistance::surface_keeps(const Vec3& from, const Vec3& axis, double le
   const double half = 0.5 * std::hypot(to.x() - from.x(), to.y() - from.y()), r = radius(middle),
                at = toothpath::azimuth(middle);
   const tooth_space::Chart& chart = impl_->chart;
-  const auto z = std::minmax({from.z(), to.z()});
-  const double r_low = radius_of_line(from, to), r_high = std::max(radius(from), radius(to)),
-               s = chart.along(middle), way = 0.5 * std::abs(chart.sine * (to.z() - from.z())) + chart.cosine * half;
-  const Extent places{chart.cosine * r_low - chart.sine * z.second, chart.cosine * r_high - chart.sine * z.first,
-                      chart.sine * r_low + chart.cosine * z.first, chart.sine * r_high + chart.cosine * z.second};
+  const double s = chart.along(middle),
+               way = 0.5 * std::abs(chart.sine * (to.z() - from.z())) + std::abs(chart.cosine) * half;
+  const tooth_space::Range rs{radius_of_line(from, to), std::max(radius(from), radius(to))},
+      zs{std::min(from.z(), to.z()), std::max(from.z(), to.z())};
+  const Extent places{chart.along(rs, zs), chart.up(rs, zs)};
   return impl_->keeps(places, within, [&](const GearRing& ring, double least) {
     // The spaces in which places of the line stand: each sees the facets of its own.
     const double sine = half / r;

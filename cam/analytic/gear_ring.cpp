@@ -19,6 +19,7 @@ constexpr std::size_t kLandStep = 4;  // of them, along a cell of a land
 constexpr int kLandParts = 4;         // cells across a land
 constexpr int kFloorStrips = 48;      // of the groove floor over a pitch
 constexpr double kFacetSag = 4e-3;    // mm: quads of the sheet are halved until their facets leave it by no more
+constexpr double kThinnest = 0.5;     // mm: no part is thinner where its teeth stand
 constexpr int kFacetHalvings = 10;    // at most: near the undercut edge no facet is that close
 
 /// Between two segments of any length, from above by no more than rounding.
@@ -43,7 +44,7 @@ class Maker {
   void make() {
     R.base_mm = std::min(part_.lowest_root(), part_.groove_floor().value_or(INFINITY)) - 0.5;
     tables();
-    R.least_radius = chart_.r(R.s_from, R.base_mm);
+    R.least_radius = std::min(chart_.r(R.s_from, R.base_mm), chart_.r(R.s_to, R.base_mm));
     sheet_cells();
     end_line(R.s_from, R.end_from, places_[0]);
     end_line(R.s_to, R.end_to, places_[1]);
@@ -411,7 +412,7 @@ class Maker {
   void add_other(std::size_t n, std::vector<clearance::Facet>& others) {
     const auto& quad = R.patches->quad(n);
     R.facet_sag = std::max(R.facet_sag, facet_sag(n, quad));
-    const int about = 1 + int(std::ceil(reach_ / (part_.pitch() * R.least_radius)));
+    const int about = 1 + int(std::ceil(reach_ / (part_.pitch() * std::max(R.least_radius, kThinnest))));
     for (int tooth = -about; tooth <= about; ++tooth) {
       std::array<Vec3, 4> c;
       for (std::size_t k = 0; k < 4; ++k) c[k] = turned(quad.corner[k], tooth * part_.pitch());

@@ -62,10 +62,16 @@ proof::RapidObstacle obstacle_of(const tooth_space::ToothedPart& part, double he
     to = std::max(to, part.space(zone).outline().s_to);
   }
   proof::RapidObstacle out;
-  out.outer_radius_mm = chart.r(to, height);
-  out.top_mm = chart.z(from, height);
-  if (chart.sine == 0) out.inner_radius_mm = from;
-  if (chart.cosine == 0) out.bottom_mm = chart.z(to, height);
+  out.outer_radius_mm = std::max(chart.r(from, height), chart.r(to, height));
+  if (chart.sine == 0) {
+    out.inner_radius_mm = from;
+    out.top_mm = height;
+    return out;
+  }
+  // Down to the axis: the end surfaces are cones about it.
+  out.top_mm = std::max(chart.z(from, height), -from / chart.sine);
+  out.bottom_mm = std::min(chart.z(to, height), -to / chart.sine);
+  if (chart.cosine != 0) out.roof = proof::Roof(chart, height);
   return out;
 }
 

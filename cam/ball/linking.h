@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "cam/analytic/roof.h"
+#include "cam/proof/roof.h"
 #include "cam/ball/finishing.h"
 #include "cam/path/cl_path.h"
 #include "cam/tool/body.h"
@@ -15,7 +15,7 @@ namespace toothpath::ball {
 struct LinkingOptions {
   double centre_mm = 0;            ///< height above the tip of the centre that the passes give
   Vec3 axis = Vec3::UnitZ();       ///< fixed tool axis of the zone, tip to holder
-  analytic::Roof clearance;        ///< where rapids run: above everything
+  proof::Roof clearance;        ///< where rapids run: above everything
   double most_dip_mm = INFINITY;   ///< by which a straight rapid may lie below it between its ends
   double hop_mm = 0;               ///< lift along the axis between neighbouring passes in the air beside the ring
   double longest_hop_mm = 0;       ///< passes that end and begin farther apart are linked over the clearance height

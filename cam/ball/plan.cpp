@@ -281,7 +281,7 @@ class Planner::Work {
     const tooth_space::Chart& chart = ring.chart;
     link.centre_mm = tool::end_centre_mm(tool_of(n));
     link.axis = direction.axis;
-    link.clearance = analytic::Roof(chart, part_.part().blank_top() + o_.rapid_clearance_mm);
+    link.clearance = proof::Roof(chart, part_.part().blank_top() + o_.rapid_clearance_mm);
     link.most_dip_mm = 0.5 * o_.rapid_clearance_mm;
     link.hop_mm = 0.2 * R + op.allowance_mm;
     link.longest_hop_mm = 1.5 * part_.part().pitch() * chart.r(ring.s_to, part_.space(zone).tip(ring.s_to));
@@ -598,9 +598,10 @@ class Planner::Work {
       const Vec3 from = a.centre + above * a.axis, to = b.centre + above * b.axis;
       const Vec2 start = from.head<2>(), way = to.head<2>() - start;
       const double t = way.isZero() ? 0 : std::clamp(-start.dot(way) / way.squaredNorm(), 0.0, 1.0);
-      const auto z = std::minmax({from.z(), to.z()});
-      low = std::min(low, chart.cosine * (start + t * way).norm() - chart.sine * z.second - widest);
-      high = std::max(high, chart.cosine * std::max(start.norm(), to.head<2>().norm()) - chart.sine * z.first + widest);
+      const tooth_space::Range s = chart.along({(start + t * way).norm(), std::max(start.norm(), to.head<2>().norm())},
+                                               {std::min(from.z(), to.z()), std::max(from.z(), to.z())});
+      low = std::min(low, s.low - widest);
+      high = std::max(high, s.high + widest);
     }
     for (int zone = 0; zone < part_.zones(); ++zone) {
       const auto& ring = part_.space(zone).outline();

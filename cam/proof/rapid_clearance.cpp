@@ -1,6 +1,7 @@
 #include "cam/proof/rapid_clearance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -79,6 +80,14 @@ class Rapid {
     return {least, most};
   }
 
+  [[nodiscard]] double over_roof(const Vec3& tip, const Vec3& axis) const {
+    double least = INFINITY;
+    for (const auto& f : frustums_) least = std::min(least, o_.roof->over(f, tip, axis));
+    // The lower half of a ball is told by none of them.
+    const Vec3 centre = tip + ball_radius_ * axis;
+    return ball_radius_ > 0 ? std::min(least, o_.roof->over(std::array{centre}) - ball_radius_) : least;
+  }
+
   bool clear(double t0, double t1, int depth, RapidProof& proof) {
     const Vec3 tip_0 = path::tip_at(m_, t0), tip_1 = path::tip_at(m_, t1), tip = 0.5 * (tip_0 + tip_1),
                axis = path::axis_at(m_, 0.5 * (t0 + t1));
@@ -90,6 +99,7 @@ class Rapid {
     if (least - run >= o_.outer_radius_mm) return true;
     if (o_.inner_radius_mm > 0 && most + run <= o_.inner_radius_mm) return true;
     if (highest(tip, axis) + rise <= o_.bottom_mm) return true;
+    if (o_.roof && over_roof(tip, axis) - half.norm() - turning >= -kBlankTouch) return true;
     if (foot_ + (tip.dot(axis) - std::abs(half.dot(axis)) - turning) >= o_.farthest(axis) - kBlankTouch) return true;
     if (run + rise < kSmallestRapid + 2 * (m_.deviation_mm + arm_ * m_.axis_deviation) || depth > 40) {
       proof.t = 0.5 * (t0 + t1);

@@ -5,8 +5,10 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "cam/path/tool_motion.h"
+#include "cam/proof/roof.h"
 #include "cam/tool/assembly.h"
 #include "cam/tool/body.h"
 #include "cam/tool/proof_tool.h"
@@ -19,6 +21,7 @@ struct RapidObstacle {
   double inner_radius_mm = 0;  ///< 0: a full cylinder
   double top_mm = 0;
   double bottom_mm = -std::numeric_limits<double>::infinity();
+  std::optional<Roof> roof = {};  ///< the ring lies below it, too
 
   /// Farthest place of the full cylinder along a unit direction.
   [[nodiscard]] double farthest(const Vec3& direction) const {

@@ -15,8 +15,14 @@
 
 namespace toothpath::tooth_space {
 
-/// The meridian plane (r, z) turned so that teeth stand upright: s runs along the teeth, h out of the body. Face gear:
-/// (r, z); cylindrical gear: (-z, r); bevel gear: turned by 90 deg less the pitch angle.
+/// Ends of a range.
+struct Range {
+  double low = 0, high = 0;
+};
+
+/// The meridian plane (r, z) turned so that teeth stand upright: s runs along the teeth, h out of the body; sine >= 0.
+/// Face gear: (r, z); cylindrical gear: (-z, r); bevel gear with its apex below: s runs along the pitch cone towards
+/// the apex, sine and cosine are the cosine of the pitch angle and its sine with a minus.
 struct Chart {
   double cosine = 1, sine = 0;
   [[nodiscard]] double along(const Vec3& p) const { return cosine * radius(p) - sine * p.z(); }
@@ -24,6 +30,15 @@ struct Chart {
   /// Derivatives of both while p moves by d.
   [[nodiscard]] double along(const Vec3& p, const Vec3& d) const { return cosine * outwards(p, d) - sine * d.z(); }
   [[nodiscard]] double up(const Vec3& p, const Vec3& d) const { return sine * outwards(p, d) + cosine * d.z(); }
+  /// Both over a range of radii and of z.
+  [[nodiscard]] Range along(const Range& r, const Range& z) const {
+    return {(cosine > 0 ? cosine * r.low : cosine * r.high) - sine * z.high,
+            (cosine > 0 ? cosine * r.high : cosine * r.low) - sine * z.low};
+  }
+  [[nodiscard]] Range up(const Range& r, const Range& z) const {
+    return {sine * r.low + (cosine > 0 ? cosine * z.low : cosine * z.high),
+            sine * r.high + (cosine > 0 ? cosine * z.high : cosine * z.low)};
+  }
   /// Radius and height of a place.
   [[nodiscard]] double r(double s, double h) const { return cosine * s + sine * h; }
   [[nodiscard]] double z(double s, double h) const { return cosine * h - sine * s; }

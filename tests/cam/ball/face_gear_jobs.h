@@ -11,6 +11,7 @@
 #include "cam/plan/milling.h"
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/part.h"
+#include "tests/support/face_part.h"
 #include "tests/support/random.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/sample_tools.h"

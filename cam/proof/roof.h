@@ -10,7 +10,7 @@
 #include "cam/tool/rounded_frustum.h"
 #include "geometry/tooth_space/toothed_part.h"
 
-namespace toothpath::analytic {
+namespace toothpath::proof {
 
 /// Least distance from the z axis of the hull of some places.
 [[nodiscard]] inline double least_radius_of_hull(std::span<const Vec3> places) {
@@ -44,26 +44,30 @@ class Roof {
   /// Of the hull of some places, from below.
   [[nodiscard]] double over(std::span<const Vec3> places) const {
     double z = INFINITY;
-    for (const Vec3& p : places) z = std::min(z, p.z());
-    return flat() ? z - top_ : chart_.sine * least_radius_of_hull(places) + chart_.cosine * z - top_;
-  }
-  /// Of a body at one pose, from below.
-  [[nodiscard]] double over(const tool::RoundedFrustum& body, const Vec3& tip, const Vec3& axis) const {
-    const double z = tool::lowest_z(body, tip, axis);
-    return flat() ? z - top_ : chart_.sine * least_radius(body, tip, axis, tip, axis) + chart_.cosine * z - top_;
-  }
-  [[nodiscard]] double over(const tool::Frustum& body, const Vec3& tip, const Vec3& axis) const {
-    return over(tool::RoundedFrustum{body, 0}, tip, axis);
+    for (const Vec3& p : places) z = std::min(z, axial(p.z()));
+    return flat() ? z - top_ : chart_.sine * least_radius_of_hull(places) + z - top_;
   }
   /// Of a body at every pose between two, whose axis turns straight from one to the other, from below.
   [[nodiscard]] double over(const tool::RoundedFrustum& body, const Vec3& tip_0, const Vec3& axis_0, const Vec3& tip_1,
                             const Vec3& axis_1) const {
-    const double z = std::min(tool::lowest_z(body, tip_0, axis_0), tool::lowest_z(body, tip_1, axis_1));
-    if (flat()) return z - top_;
-    return chart_.sine * least_radius(body, tip_0, axis_0, tip_1, axis_1) + chart_.cosine * z - top_;
+    const double z = std::min(axial(body, tip_0, axis_0), axial(body, tip_1, axis_1));
+    return flat() ? z - top_ : chart_.sine * least_radius(body, tip_0, axis_0, tip_1, axis_1) + z - top_;
+  }
+  /// The same at one pose.
+  [[nodiscard]] double over(const tool::RoundedFrustum& body, const Vec3& tip, const Vec3& axis) const {
+    return over(body, tip, axis, tip, axis);
+  }
+  [[nodiscard]] double over(const tool::Frustum& body, const Vec3& tip, const Vec3& axis) const {
+    return over(tool::RoundedFrustum{body, 0}, tip, axis);
   }
 
  private:
+  [[nodiscard]] double axial(double z) const { return chart_.cosine * z; }
+  [[nodiscard]] double axial(const tool::RoundedFrustum& body, const Vec3& tip, const Vec3& axis) const {
+    if (chart_.cosine == 0) return 0;
+    return chart_.cosine > 0 ? chart_.cosine * tool::lowest_z(body, tip, axis)
+                             : -chart_.cosine * tool::lowest_z(body, -tip, -axis);
+  }
   static double least_radius(const tool::RoundedFrustum& body, const Vec3& tip_0, const Vec3& axis_0, const Vec3& tip_1,
                              const Vec3& axis_1) {
     const double from = body.core.from, to = body.core.to;
@@ -76,4 +80,4 @@ class Roof {
   double top_ = 0;
 };
 
-}  // namespace toothpath::analytic
+}  // namespace toothpath::proof
