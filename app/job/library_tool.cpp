@@ -65,8 +65,11 @@ Result<toml::TomlTable> parse_tool_keys(std::string_view text) {
 }
 
 Result<toml::TomlValue> parse_tool_value(const toml::ValueShape& shape, std::string_view text) {
-  if (shape.kind == toml::ValueKind::text && !text.starts_with('"') && !text.starts_with('\''))
-    return toml::TomlValue{{kSaid, 0, 0}, {std::string(text)}};
+  if (shape.kind == toml::ValueKind::text && !text.starts_with('"') && !text.starts_with('\'')) {
+    toml::TomlValue said{{kSaid, 0, 0}, {}};
+    said.data.emplace<std::string>(text);
+    return said;
+  }
   const auto table = parse_tool_keys(fmt::format("value = {}", text));
   if (!table || table->entries.size() != 1)
     return fail_as(DiagnosticKind::usage, "\"{}\" is no value: {}", text, shape_text(shape));

@@ -11,6 +11,7 @@
 #include "app/report/svg/html_text.h"
 #include "geometry/base/json_text.h"
 #include "geometry/base/printable.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/inspection/table_text.h"
 #include "machines/toml/input_text.h"
 
@@ -124,7 +125,7 @@ std::optional<Diagnostic> check_sizes(const std::string& file, const std::vector
 
 Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file, const face_gear::FaceGear& gear) {
   return parse_measured(text, file, {gear.rings().size(), false, [&](int rows, int columns) {
-                                       return inspection::inspection_grid(gear, {rows, columns});
+                                       return inspection::inspection_grid(drawn_solid(gear), {rows, columns});
                                      }});
 }
 
@@ -254,7 +255,7 @@ Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal, const Mea
     add(corrected.fit, std::move(*fit));
     corrected.grid = grids.front().points;
   } else {
-    auto grid = inspection::inspection_grid(nominal);
+    auto grid = inspection::inspection_grid(drawn_solid(nominal));
     if (!grid) return grid.error();
     corrected.grid = std::move(*grid);
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/face_gear/part.h"
 #include "geometry/inspection/table_text.h"
 
 namespace toothpath::job {
@@ -48,7 +49,7 @@ Result<MeasuredPoints> parse_measured_points(std::string_view text, const std::s
 }
 
 Result<FittedCorrection> fit_points(const face_gear::FaceGear& gear, const MeasuredPoints& measured) {
-  const auto grid = inspection::inspection_grid(gear);
+  const auto grid = inspection::inspection_grid(drawn_solid(gear));
   if (!grid) return grid.error();
   FittedCorrection result;
   std::vector<inspection::ToothPlace> places;

@@ -14,8 +14,9 @@
 #include "app/process/gear_of_job.h"
 #include "app/process/opening_and_end.h"
 #include "geometry/base/json_text.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/inspection/bevel_touches.h"
-#include "geometry/inspection/face_touches.h"
+#include "geometry/inspection/tooth_touches.h"
 #include "machines/toml/input_text.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/controls/registry.h"
@@ -63,7 +64,8 @@ std::vector<Diagnostic> make_part(Inputs& in) {
   auto gear = process::make_face_gear(in.job);
   if (auto* errors = gear.refused()) return std::move(*errors);
   in.face_gear = std::move(gear).value();
-  in.part = std::make_unique<inspection::TouchedFaceGear>(*in.face_gear);
+  in.part = std::make_unique<inspection::TouchedTeeth>(drawn_solid(*in.face_gear),
+                                                       in.face_gear->parameters().allowance_top_mm);
   return {};
 }
 

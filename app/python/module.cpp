@@ -16,6 +16,7 @@
 #include "app/process/gear_of_job.h"
 #include "app/report/limits/json.h"
 #include "geometry/base/inputs_read.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/inspection/grid.h"
 #include "geometry/mesh/bevel_mesh.h"
 
@@ -119,7 +120,7 @@ class Gear {
       const inspection::InspectionOptions usual;
       const inspection::InspectionOptions options{rows.value_or(usual.rows), columns.value_or(usual.columns),
                                                   margin.value_or(usual.margin)};
-      const auto points = value_or_raise(inspection::inspection_grid(*face_, options));
+      const auto points = value_or_raise(inspection::inspection_grid(drawn_solid(*face_), options));
       return grids_of(points, options.rows, options.columns, &inspection::InspectionPoint::zone,
                       [](const inspection::InspectionPoint& p) { return py::int_(p.side); });
     }

@@ -289,21 +289,34 @@ class RestBuilder {
     return most + kLeastThick * cell_ + part.clear;
   }
 
+  /// All teeth. A row on the axis is one vertex.
   [[nodiscard]] mesh::TriangleMesh joined(const std::vector<Row>& rows) const {
     mesh::TriangleMesh mesh;
     const std::size_t teeth = std::size_t(blank_.teeth), around = columns_ * teeth;
-    for (const Row& row : rows)
-      for (std::size_t k = 0; k < teeth; ++k)
+    std::vector<std::size_t> begins, steps;
+    for (const Row& row : rows) {
+      const bool on_axis =
+          std::all_of(row.places.begin(), row.places.end(), [](const Vec3& p) { return radius(p) == 0; });
+      begins.push_back(mesh.vertices.size());
+      steps.push_back(on_axis ? 0 : 1);
+      if (on_axis) mesh.vertices.push_back(row.places.front());
+      for (std::size_t k = 0; !on_axis && k < teeth; ++k)
         for (const Vec3& p : row.places) mesh.vertices.push_back(turned(p, pitch() * double(k)));
+    }
+    const auto index = [&](std::size_t row, std::size_t column) {
+      return std::int32_t(begins[row] + steps[row] * column);
+    };
+    const auto add = [&](std::int32_t a, std::int32_t b, std::int32_t c) {
+      if (a != b && b != c && c != a) mesh.triangles.push_back({a, b, c});
+    };
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const std::size_t next = (i + 1) % rows.size();
       for (std::size_t j = 0; j < around; ++j) {
         const std::size_t k = (j + 1) % around;
-        auto a = std::int32_t(i * around + j), b = std::int32_t(next * around + j), c = std::int32_t(next * around + k),
-             d = std::int32_t(i * around + k);
+        auto a = index(i, j), b = index(next, j), c = index(next, k), d = index(i, k);
         if (blank_.outward < 0) std::swap(b, d);
-        mesh.triangles.push_back({a, b, c});
-        mesh.triangles.push_back({a, c, d});
+        add(a, b, c);
+        add(a, c, d);
       }
     }
     return mesh;

@@ -40,4 +40,22 @@ std::shared_ptr<const tooth_space::ToothedPart> part_of(const CylindricalGear& g
   return std::make_shared<CylindricalPart>(gear);
 }
 
+tooth_space::ToothedSolid drawn_solid(const CylindricalGear& gear) {
+  const double groove = 0.5 * gear.groove_diameter(), bore = 0.5 * gear.parameters().bore_diameter_mm;
+  tooth_space::ToothedSolid out;
+  out.teeth = gear.parameters().teeth;
+  out.module_mm = gear.parameters().module_mm;
+  out.lowest_root = 0.5 * gear.root_diameter();
+  out.ways_out = {"a smaller tip_diameter leaves a wider land", "a smaller root_radius_coefficient leaves a wider land",
+                  "a smaller groove_diameter leaves it"};
+  for (int zone = gear.zones() - 1; zone >= 0; --zone) out.rings.push_back({&gear.space(zone), zone});
+  for (std::size_t k = 0; k < out.rings.size(); ++k) {
+    const bool last = k + 1 == out.rings.size();
+    const auto& next = out.rings[last ? 0 : k + 1];
+    const double h = last ? bore : groove;
+    out.corners.push_back({{out.rings[k].space->outline().s_to, h}, {next.space->outline().s_from, h}});
+  }
+  return out;
+}
+
 }  // namespace toothpath::cylindrical

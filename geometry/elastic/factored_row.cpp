@@ -1,24 +1,21 @@
 #include "geometry/elastic/factored_row.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 
 namespace toothpath::elastic {
 namespace {
 
 using Sparse = Eigen::SparseMatrix<double>;
-using Factor = Eigen::SimplicialLLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>>;
 
 /// Nested dissection on the lattice: planes of brick faces part it, and come after what they part.
 class Dissection {
  public:
   explicit Dissection(const Sector& sector) : lattice_(sector.lattice) {}
+  std::vector<int> ordered;
+  std::vector<int> parts;  ///< how many nodes each has
 
-  void order(std::vector<int> nodes, std::vector<int>& out) const {
-    if (nodes.size() <= kLeaf) {
-      out.insert(out.end(), nodes.begin(), nodes.end());
-      return;
-    }
+  void order(std::vector<int> nodes) {
+    if (nodes.size() <= kLeaf) return take(nodes);
     std::size_t axis = 0;
     int widest = 0, low = 0, high = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -28,10 +25,7 @@ class Dissection {
       if (to - from <= widest) continue;
       widest = to - from, axis = k, low = from, high = to;
     }
-    if (widest < 2) {
-      out.insert(out.end(), nodes.begin(), nodes.end());
-      return;
-    }
+    if (widest < 2) return take(nodes);
     // The plane nearest to the median of the nodes.
     std::vector<int> places;
     for (const int n : nodes) places.push_back(coordinate(n, axis));
@@ -45,17 +39,19 @@ class Dissection {
       const int x = coordinate(n, axis);
       (x < plane ? below : x > plane ? above : on).push_back(n);
     }
-    if (below.empty() && above.empty()) {
-      out.insert(out.end(), nodes.begin(), nodes.end());
-      return;
-    }
-    order(std::move(below), out);
-    order(std::move(above), out);
-    out.insert(out.end(), on.begin(), on.end());
+    if (below.empty() && above.empty()) return take(nodes);
+    order(std::move(below));
+    order(std::move(above));
+    take(on);
   }
 
  private:
-  static constexpr std::size_t kLeaf = 12;
+  static constexpr std::size_t kLeaf = 24;
+  void take(const std::vector<int>& part) {
+    if (part.empty()) return;
+    ordered.insert(ordered.end(), part.begin(), part.end());
+    parts.push_back(static_cast<int>(part.size()));
+  }
   [[nodiscard]] int coordinate(int node, std::size_t axis) const {
     return lattice_[static_cast<std::size_t>(node)][axis];
   }
@@ -65,6 +61,7 @@ class Dissection {
 /// Unknowns of one sector: those inside, then those of the low cut, then those of the high cut. What is held has none.
 struct Numbering {
   std::vector<int> first;  ///< of a node, -1: held
+  std::vector<int> parts;  ///< of the inside: how many each has
   int inside = 0, cut = 0;
 };
 
@@ -74,14 +71,16 @@ Numbering number(const Sector& s) {
   for (const int k : s.low_cut) kind[static_cast<std::size_t>(k)] = 1;
   for (const int k : s.high_cut) kind[static_cast<std::size_t>(k)] = 1;
   for (const int k : s.held) kind[static_cast<std::size_t>(k)] = 2;
-  std::vector<int> free, order;
+  std::vector<int> free;
   for (std::size_t k = 0; k < s.nodes.size(); ++k)
     if (kind[k] == 0) free.push_back(static_cast<int>(k));
-  Dissection(s).order(std::move(free), order);
+  Dissection dissection(s);
+  dissection.order(std::move(free));
+  for (const int nodes : dissection.parts) n.parts.push_back(3 * nodes);
   n.first.assign(s.nodes.size(), -1);
   int next = 0;
   const auto give = [&](int k) { n.first[static_cast<std::size_t>(k)] = next, next += 3; };
-  for (const int k : order) give(k);
+  for (const int k : dissection.ordered) give(k);
   n.inside = next;
   for (const auto* cut : {&s.low_cut, &s.high_cut})
     for (const int k : *cut)
@@ -141,20 +140,15 @@ Eigen::MatrixXd chain_of(const Eigen::MatrixXd& S, int teeth) {
 Result<FactoredRow> FactoredRow::make(const Sector& s, double nu, int teeth) {
   FactoredRow row;
   const Numbering numbers = number(s);
-  Factor factor;
-  factor.compute(stiffness_of(s, numbers, nu));
-  if (factor.info() != Eigen::Success) return fail("the stiffness of a tooth is not positive definite");
+  auto factor = FrontalFactor::make(stiffness_of(s, numbers, nu), numbers.parts);
+  if (!factor) return fail("the stiffness of a tooth is not positive definite");
   row.first_ = numbers.first;
   row.high_cut_ = s.high_cut;
   row.pitch_ = s.pitch;
   row.inside_ = numbers.inside, row.cut_ = numbers.cut, row.teeth_ = teeth;
   row.reach_ = std::min(2, teeth / 2);
-  const Sparse L = factor.matrixL();
-  row.to_cuts_ = L.bottomLeftCorner(2 * row.cut_, row.inside_);
-  row.L_ = L.topLeftCorner(row.inside_, row.inside_);
-  const Eigen::MatrixXd L_cuts =
-      Eigen::MatrixXd(L.bottomRightCorner(2 * row.cut_, 2 * row.cut_)).triangularView<Eigen::Lower>().toDenseMatrix();
-  row.chain_.compute(chain_of(L_cuts * L_cuts.transpose(), teeth));
+  row.chain_.compute(chain_of(factor->rest(), teeth));
+  row.sector_ = std::move(*factor);
   if (row.chain_.info() != Eigen::Success) return fail("the stiffness of a row of teeth is not positive definite");
   return row;
 }
@@ -163,10 +157,8 @@ FactoredRow::Forward FactoredRow::forward(const Eigen::MatrixXd& at_nodes) const
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(inside_ + 2 * cut_, at_nodes.cols());
   for (std::size_t n = 0; n < first_.size(); ++n)
     if (first_[n] >= 0) all.middleRows<3>(first_[n]) = at_nodes.middleRows<3>(static_cast<Eigen::Index>(3 * n));
-  Forward out{all.topRows(inside_), all.bottomRows(2 * cut_)};
-  L_.triangularView<Eigen::Lower>().solveInPlace(out.inside);
-  out.cuts -= to_cuts_ * out.inside;
-  return out;
+  sector_->forward(all);
+  return {all.topRows(inside_), all.bottomRows(2 * cut_)};
 }
 
 Eigen::MatrixXd FactoredRow::motions(const Eigen::MatrixXd& pushed) const {
@@ -186,16 +178,13 @@ Eigen::MatrixXd FactoredRow::cuts_of(const Eigen::MatrixXd& motions, int offset)
 }
 
 Eigen::MatrixXd FactoredRow::nodes_of(const Eigen::MatrixXd& at_cuts, const Eigen::MatrixXd* inside) const {
-  Eigen::MatrixXd within = -(to_cuts_.transpose() * at_cuts);
-  if (inside != nullptr) within += *inside;
-  L_.transpose().triangularView<Eigen::Upper>().solveInPlace(within);
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(inside_ + 2 * cut_, at_cuts.cols());
+  if (inside != nullptr) all.topRows(inside_) = *inside;
+  all.bottomRows(2 * cut_) = at_cuts;
+  sector_->backward(all);
   Eigen::MatrixXd out = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(3 * first_.size()), at_cuts.cols());
-  for (std::size_t n = 0; n < first_.size(); ++n) {
-    if (first_[n] < 0) continue;
-    const auto row = static_cast<Eigen::Index>(3 * n);
-    if (first_[n] < inside_) out.middleRows<3>(row) = within.middleRows<3>(first_[n]);
-    else out.middleRows<3>(row) = at_cuts.middleRows<3>(first_[n] - inside_);
-  }
+  for (std::size_t n = 0; n < first_.size(); ++n)
+    if (first_[n] >= 0) out.middleRows<3>(static_cast<Eigen::Index>(3 * n)) = all.middleRows<3>(first_[n]);
   for (const int n : high_cut_) out.middleRows<3>(3 * n) = pitch_ * Eigen::MatrixXd(out.middleRows<3>(3 * n));
   return out;
 }

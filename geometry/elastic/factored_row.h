@@ -6,9 +6,10 @@
 #pragma once
 
 #include <Eigen/Cholesky>
-#include <Eigen/SparseCore>
+#include <optional>
 #include <vector>
 
+#include "geometry/elastic/frontal_factor.h"
 #include "geometry/elastic/sector.h"
 
 namespace toothpath::elastic {
@@ -38,13 +39,12 @@ class FactoredRow {
   [[nodiscard]] Eigen::MatrixXd nodes_of(const Eigen::MatrixXd& at_cuts, const Eigen::MatrixXd* inside) const;
 
  private:
-  using Sparse = Eigen::SparseMatrix<double>;
   FactoredRow() = default;
   std::vector<int> first_;  ///< unknown of a node, -1: held
   std::vector<int> high_cut_;
   Mat3 pitch_ = Mat3::Identity();
   int inside_ = 0, cut_ = 0, teeth_ = 0, reach_ = 0;
-  Sparse L_, to_cuts_;
+  std::optional<FrontalFactor> sector_;
   Eigen::LLT<Eigen::MatrixXd> chain_;
 };
 

@@ -56,6 +56,12 @@ class GearBrep {
   GearBrep(const GearShell& shell, const FittedShell& fitted) : shell_(shell), fitted_(fitted) {}
 
   Result<StepFile> run(std::string_view name) {
+    for (const auto& corners : shell_.corners)
+      for (std::size_t k = 0; k + 1 < corners.size(); ++k)
+        if (on_axis(corners[k]) != on_axis(corners[k + 1]) &&
+            std::abs(corners[k].z - corners[k + 1].z) > kSameLength_mm)
+          return fail("the body ends in a point at z = {:.4f} mm: a solid of ours ends in planes there",
+                      on_axis(corners[k]) ? corners[k].z : corners[k + 1].z);
     frame_ = step_.placement(Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitX());
     for (std::size_t r = 0; r < shell_.rings.size(); ++r) {
       rings_.push_back(edges_of(r));
@@ -186,6 +192,7 @@ class GearBrep {
 
   // --- surfaces of revolution ----------------------------------------------------------------------------------
 
+  [[nodiscard]] static bool on_axis(const Corner& corner) { return corner.radius < kSameLength_mm; }
   [[nodiscard]] std::size_t foot(std::size_t ring) const { return shell_.rings[ring].foot; }
   [[nodiscard]] Vec3 end_place(std::size_t ring, std::size_t end, std::size_t tooth, std::size_t strip) const {
     const SplineSurface& s = fitted_.rings[ring].strips[strip];
@@ -248,10 +255,11 @@ class GearBrep {
     const StepId at = step_.placement({0, 0, corner.z}, Vec3::UnitZ(), Vec3::UnitX());
     return step_.add("CIRCLE('',#{},{})", at, real(corner.radius));
   }
-  /// A circle, cut where `like` is.
+  /// A circle, cut where `like` is; on the axis nothing.
   Rim circle(const Corner& corner, const Rim& like) {
     Rim rim;
     rim.corner = corner;
+    if (on_axis(corner)) return rim;
     const StepId curve = circle_curve(corner);
     for (std::size_t s = 0; s < kSectors; ++s) {
       const double at = azimuth(like.places[s]);
@@ -311,14 +319,17 @@ class GearBrep {
     return edge(from.vertices[s], to.vertices[s], spline_through(curve_through(breaks, places)));
   }
   Rim surface_to(const Rim& from, const Rim& to) {
+    if (on_axis(from.corner) && on_axis(to.corner)) return to;
     const Surface surface = this->surface(from.corner, to.corner);
     if (surface.plane) {
       const bool outwards = to.corner.radius > from.corner.radius;
       Loop ahead, back;
       for (const Loop& way : to.ways) ahead.insert(ahead.end(), way.begin(), way.end());
       for (auto way = from.ways.rbegin(); way != from.ways.rend(); ++way) append_reversed(back, *way);
-      const StepId outer = bound(outwards ? ahead : back, true), inner = bound(outwards ? back : ahead, false);
-      face(surface.name, {outer, inner}, surface.id, surface.same);
+      std::vector<StepId> bounds{bound(outwards ? ahead : back, true)};
+      const Loop& inner = outwards ? back : ahead;  // empty: down to the axis
+      if (!inner.empty()) bounds.push_back(bound(inner, false));
+      face(surface.name, bounds, surface.id, surface.same);
       return to;
     }
     std::array<StepId, kSectors> cuts{};

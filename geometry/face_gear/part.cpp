@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kCloseToLimit = 0.5;  // of the module
 constexpr double kToldSize = 0.01;     // mm: to which another begin is told
+constexpr double kBaseModules = 2.5;   // thickness below the lowest point of teeth and groove
 
 class FacePart final : public tooth_space::ToothedPart {
  public:
@@ -94,6 +95,33 @@ const FaceGear& gear_of(const tooth_space::ToothedPart& part) { return dynamic_c
 
 std::shared_ptr<const tooth_space::ToothedPart> part_of(const FaceGear& gear) {
   return std::make_shared<FacePart>(gear);
+}
+
+double underside_z(const FaceGear& gear) {
+  const double lowest = gear.lowest_root();
+  const double floor = gear.rings().size() > 1 ? std::min(lowest, gear.groove_floor()) : lowest;
+  return floor - kBaseModules * gear.parameters().module_mm;
+}
+
+tooth_space::ToothedSolid drawn_solid(const FaceGear& gear) {
+  const auto& rings = gear.rings();
+  tooth_space::ToothedSolid out;
+  out.teeth = gear.parameters().teeth;
+  out.module_mm = gear.parameters().module_mm;
+  out.lowest_root = gear.lowest_root();
+  out.measured_on_one_tooth = true;
+  out.flanks_begin = 0;  // of the involute
+  out.ways_out = {"a smaller outer radius leaves a wider land", "a smaller shaper_tip_radius leaves a wider land",
+                  "a deeper stock.groove_depth leaves it"};
+  for (std::size_t k = 0; k < rings.size(); ++k) {
+    out.rings.push_back({&gear.drawn(k), int(k)});
+    if (k + 1 < rings.size())
+      out.corners.push_back({{rings[k].zone.outer_radius_mm, gear.groove_floor()},
+                             {rings[k + 1].zone.inner_radius_mm, gear.groove_floor()}});
+  }
+  const double under = underside_z(gear);
+  out.corners.push_back({{gear.outer_radius(), under}, {gear.inner_radius(), under}});
+  return out;
 }
 
 }  // namespace toothpath::face_gear

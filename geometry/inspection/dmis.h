@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/face_gear/gear.h"
 #include "geometry/inspection/grid.h"
 
 namespace toothpath::inspection {

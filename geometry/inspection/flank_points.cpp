@@ -8,6 +8,7 @@
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/flank_foot.h"
 #include "geometry/face_gear/inverse.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/inspection/grid.h"
 
 namespace toothpath::inspection {
@@ -193,7 +194,7 @@ Diagnostic off_every_flank(const Placing& placing, const PointFile& measured, co
 
 Result<std::vector<FlankPoint>> place_on_flanks(const face_gear::FaceGear& gear, const PointFile& measured,
                                                 double ball_radius_mm) {
-  const auto grid = inspection_grid(gear);
+  const auto grid = inspection_grid(drawn_solid(gear));
   if (!grid) return grid.error();
   const Placing placing(gear, *grid, ball_radius_mm);
   std::vector<FlankPoint> out;

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <tuple>
 
-#include "geometry/face_gear/space_sheet.h"
+#include "geometry/mesh/tooth_section.h"
 
 namespace toothpath::inspection {
 namespace {
@@ -20,41 +21,37 @@ double inside(double from, double to, double margin, int k, int n) {
 }
 
 /// The points of one column, from the fillet to the tip.
-Result<std::vector<InspectionPoint>> column_points(const face_gear::SpaceSheet& sheet, int side, double r,
+Result<std::vector<InspectionPoint>> column_points(const tooth_space::ToothedSolid& gear,
+                                                   const tooth_space::ToothSpace& space,
+                                                   const mesh::ToothSection& section, int side,
                                                    const InspectionOptions& options) {
-  const auto& f = sheet.surface();
-  const double z_tip = f.z_tip(r), theta_t = f.shaper.theta_t;
-  const auto tip = sheet.invert(side, r, z_tip);
-  if (!tip)
-    return fail("flank {:+d} does not reach the tip surface at radius {:.4f} mm (height {:.4f} mm)", side, r, z_tip);
-  const double theta_top = std::max(tip->theta, 0.0);
-  if (theta_top >= theta_t) return fail("flank {:+d} has no involute at radius {:.4f} mm", side, r);
+  const auto [at_fillet, at_tip] = section.flank_ends(side);
+  double top = at_tip;
+  if (gear.flanks_begin)
+    top = at_fillet > at_tip ? std::max(top, *gear.flanks_begin) : std::min(top, *gear.flanks_begin);
+  if ((top - at_fillet) * (at_tip - at_fillet) <= 0)
+    return fail("flank {:+d} has no involute at {}", side, section.station());
+  // The minus flank of the space is that of tooth 1.
+  const double turn = side < 0 && gear.measured_on_one_tooth ? -gear.pitch() : 0;
   std::vector<InspectionPoint> points(std::size_t(options.rows));
-  double theta = tip->theta, B = tip->B;
-  for (int row = options.rows - 1; row >= 0; --row) {  // from the tip down, each solution starts the next
-    const double goal = inside(theta_t, theta_top, options.margin, row, options.rows), from = theta;
-    const int steps = std::max(1, int(std::ceil(std::abs(goal - from) / 0.05)));
-    for (int k = 1; k <= steps; ++k) {
-      theta = k == steps ? goal : from + (goal - from) * double(k) / double(steps);
-      const auto next = sheet.B_at_radius(side, theta, r, B);
-      if (!next) return fail("flank {:+d} does not reach its fillet at radius {:.4f} mm: undercut", side, r);
-      B = *next;
-    }
-    const auto at = sheet.flank(side, theta, B);
+  for (int row = 0; row < options.rows; ++row) {
+    const auto at = section.flank_at(side, inside(at_fillet, top, options.margin, row, options.rows));
+    const auto on_flank = at ? space.point(tooth_space::flank_of(side), at->uv.x(), at->uv.y()) : std::nullopt;
+    if (!on_flank) return fail("flank {:+d} does not reach its fillet at {}: undercut", side, section.station());
     InspectionPoint& point = points[std::size_t(row)];
     point.side = side;
     point.row = row;
-    point.theta = theta;
-    point.B = B;
-    point.p = at.p;
-    point.n = at.n;
+    point.theta = at->uv.x();
+    point.B = at->uv.y();
+    point.p = turned(on_flank->p, turn);
+    point.n = turned(on_flank->n, turn);
   }
   return points;
 }
 
 }  // namespace
 
-Result<std::vector<InspectionPoint>> inspection_grid(const face_gear::FaceGear& gear,
+Result<std::vector<InspectionPoint>> inspection_grid(const tooth_space::ToothedSolid& gear,
                                                      const InspectionOptions& options) {
   if (options.rows < kLeastInspectedRows || options.rows > kMost)
     return fail("inspection rows = {} is outside {} .. {}", options.rows, kLeastInspectedRows, kMost);
@@ -63,25 +60,29 @@ Result<std::vector<InspectionPoint>> inspection_grid(const face_gear::FaceGear& 
   if (!(options.margin >= 0 && options.margin <= kMostMargin))
     return fail("inspection margin = {:g} is outside 0 .. {:g}", options.margin, kMostMargin);
   std::vector<InspectionPoint> grid;
-  for (std::size_t zone = 0; zone < gear.rings().size(); ++zone) {
-    const face_gear::FaceGearRing& ring = gear.rings()[zone];
-    for (const int side : {1, -1}) {
-      const auto first = grid.size();
+  for (const auto& ring : gear.rings) {
+    const auto& outline = ring.space->outline();
+    std::vector<mesh::ToothSection> sections;
+    for (int column = 0; column < options.columns; ++column) {
+      const double s = inside(outline.s_from, outline.s_to, options.margin, column, options.columns);
+      auto section = mesh::ToothSection::at(*ring.space, s, sections.empty() ? nullptr : &sections.back());
+      if (!section) return section.error();
+      sections.push_back(std::move(*section));
+    }
+    for (const int side : {1, -1})
       for (int column = 0; column < options.columns; ++column) {
-        const double r =
-            inside(ring.zone.inner_radius_mm, ring.zone.outer_radius_mm, options.margin, column, options.columns);
-        auto points = column_points(gear.drawn(zone), side, r, options);
+        auto points = column_points(gear, *ring.space, sections[std::size_t(column)], side, options);
         if (!points) return points.error();
         for (InspectionPoint& point : *points) {
-          point.zone = int(zone);
+          point.zone = ring.zone;
           point.column = column;
           grid.push_back(point);
         }
       }
-      std::stable_sort(grid.begin() + std::ptrdiff_t(first), grid.end(),
-                       [](const InspectionPoint& a, const InspectionPoint& b) { return a.row < b.row; });
-    }
   }
+  std::stable_sort(grid.begin(), grid.end(), [](const InspectionPoint& a, const InspectionPoint& b) {
+    return std::tuple(a.zone, -a.side, a.row) < std::tuple(b.zone, -b.side, b.row);
+  });
   return grid;
 }
 

@@ -34,7 +34,8 @@ class Solver {
          const std::vector<TouchResult>& results)
       : part_(part),
         plan_(plan),
-        above_(0.5 * options.ball_diameter_mm + options.allowance_mm),
+        ball_(0.5 * options.ball_diameter_mm),
+        allowance_(options.allowance_mm),
         results_(results),
         clocks_(std::any_of(plan.touches.begin(), plan.touches.end(),
                             [](const Touch& t) { return t.what == Touched::flank; })) {}
@@ -95,12 +96,12 @@ class Solver {
   [[nodiscard]] std::optional<double> distance(const Touch& touch, const Vec3& q) const {
     const auto off = part_.distance(touch, q);
     if (!off) return {};
-    return *off - above_;
+    return *off - ball_ - (touch.what == Touched::end ? 0 : allowance_);
   }
 
   const TouchedPart& part_;
   const TouchPlan& plan_;
-  double above_;
+  double ball_, allowance_;
   const std::vector<TouchResult>& results_;
   bool clocks_;  ///< teeth were touched: the turn about z is asked, too
 };

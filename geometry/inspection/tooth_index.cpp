@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "geometry/face_gear/part.h"
 #include "geometry/inspection/grid.h"
 
 namespace toothpath::inspection {
@@ -53,7 +54,7 @@ std::optional<PitchDeviation> pitch_of(const face_gear::FaceGearRing& ring, int 
 
 /// Height of a ball between flank +1 of tooth 0 and flank -1 of tooth 1 for a millimetre of material on either.
 Result<Vec2> rise_of_ball(const face_gear::FaceGear& gear, std::size_t zone) {
-  const auto grid = inspection_grid(gear);
+  const auto grid = inspection_grid(drawn_solid(gear));
   if (!grid) return grid.error();
   int rows = 0, columns = 0;
   for (const auto& p : *grid) {

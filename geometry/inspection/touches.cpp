@@ -92,6 +92,11 @@ Result<TouchPlan> plan_touches(const TouchedPart& part, const TouchOptions& opti
   int number = 0;
   for (Touch& touch : plan.touches) {
     touch.number = ++number;
+    if (touch.what == Touched::end) {
+      touch.approach_mm = options.approach_mm;
+      touch.centre = touch.surface + 0.5 * options.ball_diameter_mm * touch.normal;
+      continue;
+    }
     const auto gap = approach(part, touch, options);
     if (!gap) return too_large(part, touch, options);
     plan.gap_mm = std::min(plan.gap_mm, *gap);

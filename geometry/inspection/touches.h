@@ -21,7 +21,8 @@ struct TouchOptions {
   int spaces = 4;               ///< tooth spaces, evenly around, 3 or more
 };
 
-enum class Touched : std::uint8_t { flank, top, rim };
+/// `top` and `rim` of a blank; `end`: the end face of a tooth, on which no allowance stands.
+enum class Touched : std::uint8_t { flank, top, rim, end };
 
 /// One touch; gear frame.
 struct Touch {
@@ -59,7 +60,8 @@ class TouchedPart {
 
   [[nodiscard]] virtual int teeth() const = 0;
   [[nodiscard]] virtual PartReach reach() const = 0;
-  /// Places of both flanks of the asked spaces, without ball and approach.
+  /// Places of both flanks of the asked spaces, without ball and approach; where flanks alone do not show the place
+  /// along the axis, ends of teeth, too.
   [[nodiscard]] virtual Result<std::vector<Touch>> flank_places(int spaces) const = 0;
   /// The same of the turned blank: those show the place of the part, but for its turn.
   [[nodiscard]] virtual Result<std::vector<Touch>> blank_places(int spaces) const = 0;

@@ -11,6 +11,7 @@ namespace {
 constexpr double kSame_mm = 1e-9;      ///< vertices of one row that are closer are one vertex
 constexpr double kMargin = 1.15;       ///< on the measured sag
 constexpr double kFootModules = 0.25;  ///< how far below the root an end face ends and the body begins
+constexpr double kTurnShare = 0.25;    ///< of the tolerance: sag of a facet by the turn between two rows of the body
 
 using Index = std::int32_t;
 
@@ -38,27 +39,32 @@ Result<std::vector<SectionPoint>> PitchBuilder::exact_row(const ToothSection& se
   points.reserve(columns_.size());
   for (const GridColumn& c : columns_) {
     const auto p = section.point(c.segment, shift == 0 ? c.from : c.from + shift * (c.to - c.from));
-    if (!p) return fail("{} is not defined at radius {:.4f} mm", to_string(segment_patch(c.segment)), section.radius());
+    if (!p) return fail("{} is not defined at {}", to_string(segment_patch(c.segment)), section.station());
     points.push_back(*p);
   }
   return points;
 }
 
 /// Adds the vertices of one row. The last column is the first one turned by a pitch; coincident neighbours are one
-/// vertex; where the row meets `shared` at height `shared_z`, that row's vertices are taken.
-PitchBuilder::Row PitchBuilder::add_row(std::vector<Vec3> points, const Row* shared, double shared_z) {
+/// vertex; where the row meets `shared` at height `shared_h`, that row's vertices are taken. On the axis all are one.
+PitchBuilder::Row PitchBuilder::add_row(std::vector<Vec3> points, const Row* shared, double shared_h) {
   Row row;
   const std::size_t n = points.size();
   row.index.assign(n, -1);
   const auto same = [&](std::size_t a, std::size_t b) { return (points[a] - points[b]).norm() <= kSame_mm; };
   if (shared)
     for (std::size_t j = 0; j < n; ++j)
-      if (std::abs(at(*shared, j).z() - shared_z) <= kSame_mm) row.index[j] = shared->index[j];
+      if (std::abs(h_of(*shared, j) - shared_h) <= kSame_mm) row.index[j] = shared->index[j];
   const auto add = [&](const Vec3& p, Index from) {
     out_.mesh.vertices.push_back(p);
     out_.turned_from.push_back(from);
     return Index(out_.mesh.vertices.size() - 1);
   };
+  if (radius(points[0]) == 0) {
+    row.index.assign(n, Index(out_.mesh.vertices.size()));
+    add(points[0], row.index[0]);
+    return row;
+  }
   if (row.index[0] < 0) row.index[0] = add(points[0], -1);
   if (row.index[n - 1] < 0) row.index[n - 1] = add(turned_by_pitches(points[0], 1, out_.teeth), row.index[0]);
   for (std::size_t j = n - 1; j-- > 1 && row.index[j] < 0 && same(j, j + 1);) row.index[j] = row.index[j + 1];
@@ -67,21 +73,31 @@ PitchBuilder::Row PitchBuilder::add_row(std::vector<Vec3> points, const Row* sha
   return row;
 }
 
-/// The row straight below a profile row, at height z.
-PitchBuilder::Row PitchBuilder::row_below(const Row& profile, double z) {
+/// The azimuths of a profile row at a corner (s, h) of the meridian, turned column by column.
+PitchBuilder::Row PitchBuilder::row_at(const Row& profile, const Vec2& corner, const std::vector<double>& turns) {
+  const double r = chart_.r(corner.x(), corner.y()), z = chart_.z(corner.x(), corner.y());
   std::vector<Vec3> points;
-  for (std::size_t j = 0; j < profile.index.size(); ++j) points.emplace_back(at(profile, j).x(), at(profile, j).y(), z);
-  return add_row(std::move(points), &profile, z);
+  for (std::size_t j = 0; j < profile.index.size(); ++j) {
+    const Vec3& p = at(profile, j);
+    const double own = radius(p), scale = std::abs(own - r) <= kSame_mm ? 1 : r / own;
+    const Vec3 placed(scale * p.x(), scale * p.y(), z);
+    points.push_back(turns.empty() ? placed : turned(placed, turns[j]));
+  }
+  const bool below = std::abs(corner.x() - s_of(profile)) <= kSame_mm;
+  return add_row(std::move(points), below ? &profile : nullptr, corner.y());
 }
 
-Result<PitchBuilder::RingRows> PitchBuilder::add_ring(std::size_t zone, const std::vector<double>& radii) {
+/// The row straight below a profile row.
+PitchBuilder::Row PitchBuilder::row_below(const Row& profile, double h) { return row_at(profile, {s_of(profile), h}); }
+
+Result<PitchBuilder::RingRows> PitchBuilder::add_ring(std::size_t ring, const std::vector<double>& stations) {
   RingRows rows;
   std::optional<ToothSection> near;
-  const auto section_at = [&](double r) {
-    return ToothSection::at(gear_.drawn(zone), out_.teeth, r, near ? &*near : nullptr);
+  const auto section_at = [&](double s) {
+    return ToothSection::at(*gear_.rings[ring].space, s, near ? &*near : nullptr);
   };
-  for (std::size_t i = 0; i < radii.size(); ++i) {
-    auto section = section_at(radii[i]);
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    auto section = section_at(stations[i]);
     if (!section) return section.error();
     near = *section;
     const auto points = exact_row(*near, 0);
@@ -98,8 +114,8 @@ Result<PitchBuilder::RingRows> PitchBuilder::add_ring(std::size_t zone, const st
     rows.rows.push_back(add_row(std::move(places)));
     rows.rows.back().uv = std::move(uv);
   }
-  for (std::size_t i = 0; i + 1 < radii.size(); ++i) {
-    auto middle = section_at(0.5 * (radii[i] + radii[i + 1]));
+  for (std::size_t i = 0; i + 1 < stations.size(); ++i) {
+    auto middle = section_at(0.5 * (stations[i] + stations[i + 1]));
     if (!middle) return middle.error();
     near = *middle;
     const auto centres = exact_row(*near, 0.5);
@@ -139,8 +155,13 @@ void PitchBuilder::add_surface_strip(const RingRows& ring, std::size_t strip, st
   }
 }
 
-/// A strip of a cylinder or plane between two rows; the azimuth runs on from column to column.
-void PitchBuilder::add_plain_strip(const Row& from, const Row& to, Piece patch, std::uint8_t zone, bool v_is_z) {
+/// A strip of a surface of revolution between two rows; the azimuth runs on from column to column.
+void PitchBuilder::add_plain_strip(const Row& from, const Row& to, Piece patch, std::uint8_t zone) {
+  const Vec3 way = at(to, 0) - at(from, 0);
+  const bool v_is_z = std::abs(way.z()) > std::abs(radius(at(to, 0)) - radius(at(from, 0)));
+  const auto sags = [&](double r, double turn) {
+    turned_sag_ = std::max(turned_sag_, 2 * r * std::pow(std::sin(turn / 4), 2));
+  };
   const auto coordinates = [&](const Row& row) {
     std::vector<Vec2> uv;
     double azimuth = std::atan2(at(row, 0).y(), at(row, 0).x());
@@ -148,7 +169,7 @@ void PitchBuilder::add_plain_strip(const Row& from, const Row& to, Piece patch, 
       const double turn = j > 0 ? angle_from_to(at(row, j - 1), at(row, j)) : 0.0;
       const double r = std::hypot(at(row, j).x(), at(row, j).y());
       azimuth += turn;
-      cylinder_sag_ = std::max(cylinder_sag_, 2 * r * std::pow(std::sin(turn / 4), 2));
+      sags(r, turn);
       uv.emplace_back(azimuth, v_is_z ? at(row, j).z() : r);
     }
     return uv;
@@ -156,74 +177,131 @@ void PitchBuilder::add_plain_strip(const Row& from, const Row& to, Piece patch, 
   std::vector<Vec2> u0 = coordinates(from), u1 = coordinates(to);
   const double turns = 2 * kPi * std::round((u0[0].x() - u1[0].x()) / (2 * kPi));
   for (Vec2& u : u1) u.x() += turns;
+  const bool plane = std::abs(way.z()) <= kSame_mm;
+  const auto edge = [&](const Vec3& a, const Vec3& b) {
+    if (!plane) sags(std::max(radius(a), radius(b)), angle_from_to(a, b));
+  };
   for (std::size_t j = 0; j + 1 < from.index.size(); ++j) {
     const Index i00 = from.index[j], i01 = from.index[j + 1], i10 = to.index[j], i11 = to.index[j + 1];
     const bool falling = (at(to, j) - at(from, j + 1)).squaredNorm() < (at(to, j + 1) - at(from, j)).squaredNorm();
+    edge(at(from, j), at(to, j));
     if (falling) {
+      edge(at(to, j), at(from, j + 1));
       add_triangle(i00, i10, i01, {patch, zone, {u0[j], u1[j], u0[j + 1]}});
       add_triangle(i10, i11, i01, {patch, zone, {u1[j], u1[j + 1], u0[j + 1]}});
     } else {
+      edge(at(from, j), at(to, j + 1));
       add_triangle(i00, i10, i11, {patch, zone, {u0[j], u1[j], u1[j + 1]}});
       add_triangle(i00, i11, i01, {patch, zone, {u0[j], u1[j + 1], u0[j + 1]}});
     }
   }
 }
 
-Status PitchBuilder::check_no_overhang(const Row& row, double r) const {
+Status PitchBuilder::check_no_overhang(const Row& row) const {
   for (std::size_t j = 0; j + 1 < row.index.size(); ++j)
     if (row.index[j] != row.index[j + 1] && !(angle_from_to(at(row, j), at(row, j + 1)) > 0))
-      return fail("the flank overhangs at the end of the teeth, radius {:.4f} mm, height {:.4f} mm", r, at(row, j).z());
+      return fail("the flank overhangs at the end of the teeth, radius {:.4f} mm, height {:.4f} mm", radius(at(row, j)),
+                  h_of(row, j));
+  return Ok{};
+}
+
+/// What is turned must lie below the tooth spaces at the end of a ring.
+Status PitchBuilder::below_the_teeth(const Row& end, double h, const char* what) const {
+  for (std::size_t j = 0; j < end.index.size(); ++j)
+    if (h_of(end, j) < h - kSame_mm)
+      return fail("{} at height {:.4f} mm lies above the tooth space beside it ({:.4f} mm)", what, h, h_of(end, j));
+  return Ok{};
+}
+
+/// Where the end face of a ring goes over into the body: below the roots, where there is room.
+std::optional<PitchBuilder::Row> PitchBuilder::foot_of(const Row& profile, double corner_h) {
+  double lowest = INFINITY;
+  for (std::size_t j = 0; j < profile.index.size(); ++j) lowest = std::min(lowest, h_of(profile, j));
+  const double h = lowest - kFootModules * gear_.module_mm;
+  if (h <= corner_h + kSame_mm) return {};
+  return row_below(profile, h);
+}
+
+/// Rows from `from`, at the first of the corners, to that of the next ring's `profile` at the last one: they turn from
+/// the azimuths of the one to those of the other on the first stretch, where facets between the two would leave the
+/// surface in steps.
+std::vector<PitchBuilder::Row> PitchBuilder::turned_rows(const Row& from, const Row& profile,
+                                                         const std::vector<Vec2>& corners) {
+  const double first = angle_from_to(at(from, 0), at(profile, 0));
+  std::vector<double> turns(from.index.size());
+  double most = 0;
+  for (std::size_t j = 0; j < turns.size(); ++j) {
+    turns[j] = first + wrapped(angle_from_to(at(from, j), at(profile, j)) - first);
+    most = std::max(most, std::abs(turns[j]));
+  }
+  const Vec2 &a = corners[0], &b = corners[1];
+  const double r_a = chart_.r(a.x(), a.y()), r_b = chart_.r(b.x(), b.y()), r = std::max(r_a, r_b);
+  double allowed = 4 * std::asin(std::sqrt(std::min(1.0, kTurnShare * out_.tolerance_mm / (2 * r))));
+  // In a plane facets must only keep out of the circle inside.
+  if (std::abs(chart_.z(a.x(), a.y()) - chart_.z(b.x(), b.y())) <= kSame_mm)
+    allowed = std::max(allowed, 0.5 * std::acos(std::min(r_a, r_b) / r));
+  const auto steps = r > 0 ? std::max<std::size_t>(1, std::size_t(std::ceil(most / allowed))) : 1;
+  std::vector<Row> rows;
+  for (std::size_t k = 1; k < steps; ++k) {
+    const double t = double(k) / double(steps);
+    std::vector<double> part = turns;
+    for (double& turn : part) turn *= t;
+    rows.push_back(row_at(from, a + t * (b - a), part));
+  }
+  for (std::size_t k = 1; k < corners.size(); ++k) rows.push_back(row_at(profile, corners[k]));
+  return rows;
+}
+
+/// From the end of a ring to the next one.
+Status PitchBuilder::add_groove(std::size_t ring) {
+  const Row &end = rings_[ring].rows.back(), &next = rings_[ring + 1].rows.front();
+  const auto& corners = gear_.corners[ring];
+  if (const auto s = below_the_teeth(end, corners.front().y(), "the groove's floor"); !s) return s;
+  if (const auto s = below_the_teeth(next, corners.back().y(), "the groove's floor"); !s) return s;
+  if (!(s_of(next) - s_of(end) > kSame_mm))
+    return fail("groove width = 0 between ring {} and ring {}: a solid needs a gap", ring, ring + 1);
+  const auto zone = std::uint8_t(ring);
+  std::vector<Row> rows{row_at(end, corners.front())};
+  for (Row& row : turned_rows(rows.front(), next, corners)) rows.push_back(std::move(row));
+  add_plain_strip(end, rows.front(), Piece::end, zone);
+  for (std::size_t k = 0; k + 1 < rows.size(); ++k) add_plain_strip(rows[k], rows[k + 1], Piece::groove, zone);
+  add_plain_strip(rows.back(), next, Piece::end, std::uint8_t(ring + 1));
+  return Ok{};
+}
+
+/// From the end of the last ring along the body to the begin of the first.
+Status PitchBuilder::add_body() {
+  const Row &end = rings_.back().rows.back(), &next = rings_.front().rows.front();
+  const auto& corners = gear_.corners.back();
+  if (const auto s = below_the_teeth(end, corners.front().y(), "the body"); !s) return s;
+  if (const auto s = below_the_teeth(next, corners.back().y(), "the body"); !s) return s;
+  const auto last = std::uint8_t(rings_.size() - 1);
+  const auto foot = foot_of(end, corners.front().y());
+  std::vector<Row> rows{row_at(end, corners.front())};
+  for (Row& row : turned_rows(rows.front(), next, corners)) rows.push_back(std::move(row));
+  const auto next_foot = foot_of(next, corners.back().y());
+  add_plain_strip(end, foot ? *foot : rows.front(), Piece::end, last);
+  if (foot) add_plain_strip(*foot, rows.front(), Piece::body, last);
+  for (std::size_t k = 0; k + 1 < rows.size(); ++k) add_plain_strip(rows[k], rows[k + 1], Piece::body, 0);
+  if (next_foot) add_plain_strip(rows.back(), *next_foot, Piece::body, 0);
+  add_plain_strip(next_foot ? *next_foot : rows.back(), next, Piece::end, 0);
   return Ok{};
 }
 
 Status PitchBuilder::build() {
-  const auto& rings = gear_.rings();
-  const double m = gear_.parameters().module_mm;
-  for (std::size_t k = 0; k < rings.size(); ++k) {
-    auto rows = add_ring(k, grid_.radii[k]);
+  for (std::size_t k = 0; k < gear_.rings.size(); ++k) {
+    auto rows = add_ring(k, grid_.stations[k]);
     if (!rows) return rows.error();
     rings_.push_back(std::move(*rows));
-    for (const Row* end : {&rings_.back().rows.front(), &rings_.back().rows.back()}) {
-      const auto fine = check_no_overhang(*end, std::hypot(at(*end, 0).x(), at(*end, 0).y()));
-      if (!fine) return fine.error();
-    }
+    for (const Row* end : {&rings_.back().rows.front(), &rings_.back().rows.back()})
+      if (const auto fine = check_no_overhang(*end); !fine) return fine;
   }
-  const double floor = rings.size() > 1 ? gear_.groove_floor() : 0, z_base = underside_z(gear_);
-
-  for (std::size_t k = 0; k < rings.size(); ++k) {
-    const auto zone = std::uint8_t(k);
-    const RingRows& ring = rings_[k];
-    for (std::size_t i = 0; i < ring.falling.size(); ++i) add_surface_strip(ring, i, zone);
-    if (k + 1 == rings.size()) break;
-    const Row &end = ring.rows.back(), &next = rings_[k + 1].rows.front();
-    for (const Row* row : {&end, &next})
-      for (std::size_t j = 0; j < row->index.size(); ++j)
-        if (at(*row, j).z() < floor - kSame_mm)
-          return fail("groove floor z = {:.4f} mm lies above the tooth space beside it (z = {:.4f} mm)", floor,
-                      at(*row, j).z());
-    if (!(std::hypot(at(next, 0).x(), at(next, 0).y()) - std::hypot(at(end, 0).x(), at(end, 0).y()) > kSame_mm))
-      return fail("groove width = 0 between ring {} and ring {}: a solid needs a gap", k, k + 1);
-    const Row a = row_below(end, floor), b = row_below(next, floor);
-    add_plain_strip(end, a, Piece::end, zone, true);
-    add_plain_strip(a, b, Piece::groove, zone, false);
-    add_plain_strip(b, next, Piece::end, std::uint8_t(k + 1), true);
+  for (std::size_t k = 0; k < rings_.size(); ++k) {
+    for (std::size_t i = 0; i < rings_[k].falling.size(); ++i) add_surface_strip(rings_[k], i, std::uint8_t(k));
+    if (k + 1 < rings_.size())
+      if (const auto s = add_groove(k); !s) return s;
   }
-
-  const Row &inner = rings_.front().rows.front(), &outer = rings_.back().rows.back();
-  const auto last = std::uint8_t(rings.size() - 1);
-  const auto foot_of = [&](const Row& row) {
-    double z = INFINITY;
-    for (std::size_t j = 0; j < row.index.size(); ++j) z = std::min(z, at(row, j).z());
-    return row_below(row, z - kFootModules * m);
-  };
-  const Row outer_foot = foot_of(outer), outer_base = row_below(outer, z_base);
-  const Row inner_base = row_below(inner, z_base), inner_foot = foot_of(inner);
-  add_plain_strip(outer, outer_foot, Piece::end, last, true);
-  add_plain_strip(outer_foot, outer_base, Piece::body, last, true);
-  add_plain_strip(outer_base, inner_base, Piece::body, 0, false);
-  add_plain_strip(inner_base, inner_foot, Piece::body, 0, true);
-  add_plain_strip(inner_foot, inner, Piece::end, 0, true);
-  return Ok{};
+  return add_body();
 }
 
 /// Distance of p to the triangles of the cell and, if that is more than `enough`, of its neighbours.
@@ -247,12 +325,13 @@ double PitchBuilder::distance_near(const RingRows& ring, std::size_t strip, std:
 Result<std::array<double, tooth_space::kSurfaces>> PitchBuilder::measure_sag(int n) const {
   std::array<double, tooth_space::kSurfaces> sag{};
   for (std::size_t k = 0; k < rings_.size(); ++k) {
-    const auto& radii = grid_.radii[k];
+    const auto& stations = grid_.stations[k];
     std::optional<ToothSection> near;
-    for (std::size_t i = 0; i + 1 < radii.size(); ++i)
-      for (int a = 0; a < n + (i + 2 == radii.size() ? 1 : 0); ++a) {
-        const double r = a == n ? radii[i + 1] : radii[i] + (radii[i + 1] - radii[i]) * double(a) / double(n);
-        auto section = ToothSection::at(gear_.drawn(k), out_.teeth, r, near ? &*near : nullptr);
+    for (std::size_t i = 0; i + 1 < stations.size(); ++i)
+      for (int a = 0; a < n + (i + 2 == stations.size() ? 1 : 0); ++a) {
+        const double s =
+            a == n ? stations[i + 1] : stations[i] + (stations[i + 1] - stations[i]) * double(a) / double(n);
+        auto section = ToothSection::at(*gear_.rings[k].space, s, near ? &*near : nullptr);
         if (!section) return section.error();
         near = *section;
         for (int b = 0; b < n; ++b) {
@@ -266,11 +345,11 @@ Result<std::array<double, tooth_space::kSurfaces>> PitchBuilder::measure_sag(int
         }
       }
   }
-  // The end faces are exact cylinders below outlines that are as good as the surfaces above them.
+  // The end faces are exact below outlines that are as good as the surfaces above them.
   const double surface = *std::max_element(sag.begin(), sag.end());
-  sag[std::size_t(Piece::end)] = std::max(surface, cylinder_sag_);
-  sag[std::size_t(Piece::body)] = cylinder_sag_;
-  if (rings_.size() > 1) sag[std::size_t(Piece::groove)] = cylinder_sag_;
+  sag[std::size_t(Piece::end)] = std::max(surface, turned_sag_);
+  sag[std::size_t(Piece::body)] = turned_sag_;
+  if (rings_.size() > 1) sag[std::size_t(Piece::groove)] = turned_sag_;
   for (double& s : sag) s *= kMargin;
   return sag;
 }

@@ -15,9 +15,9 @@ namespace toothpath::mesh {
 /// Holds references to gear and grid.
 class PitchBuilder {
  public:
-  PitchBuilder(const face_gear::FaceGear& gear, const ToothGrid& grid, double tolerance_mm)
-      : gear_(gear), grid_(grid), columns_(grid_columns(grid)) {
-    out_.teeth = gear.parameters().teeth;
+  PitchBuilder(const ToothedSolid& gear, const ToothGrid& grid, double tolerance_mm)
+      : gear_(gear), grid_(grid), chart_(gear.chart()), columns_(grid_columns(grid)) {
+    out_.teeth = gear.teeth;
     out_.tolerance_mm = tolerance_mm;
   }
 
@@ -29,7 +29,7 @@ class PitchBuilder {
   ToothMesh take() { return std::move(out_); }
 
  private:
-  /// A row of vertices across the pitch, on one cylinder.
+  /// A row of vertices across the pitch, at one station.
   struct Row {
     std::vector<std::int32_t> index;
     std::vector<Vec2> uv;  ///< by slot; empty for the rows below the teeth
@@ -41,22 +41,31 @@ class PitchBuilder {
   };
 
   Result<std::vector<SectionPoint>> exact_row(const ToothSection& section, double shift) const;
-  Result<RingRows> add_ring(std::size_t zone, const std::vector<double>& radii);
-  Row add_row(std::vector<Vec3> points, const Row* shared = nullptr, double shared_z = 0);
-  Row row_below(const Row& profile, double z);
+  Result<RingRows> add_ring(std::size_t ring, const std::vector<double>& stations);
+  Row add_row(std::vector<Vec3> points, const Row* shared = nullptr, double shared_h = 0);
+  Row row_at(const Row& profile, const Vec2& corner, const std::vector<double>& turns = {});
+  Row row_below(const Row& profile, double h);
+  std::optional<Row> foot_of(const Row& profile, double corner_h);
+  std::vector<Row> turned_rows(const Row& from, const Row& profile, const std::vector<Vec2>& corners);
+  Status below_the_teeth(const Row& end, double h, const char* what) const;
+  Status add_groove(std::size_t ring);
+  Status add_body();
   void add_triangle(std::int32_t a, std::int32_t b, std::int32_t c, const TriangleTag& tag);
   void add_surface_strip(const RingRows& ring, std::size_t strip, std::uint8_t zone);
-  void add_plain_strip(const Row& from, const Row& to, Piece patch, std::uint8_t zone, bool v_is_z);
-  Status check_no_overhang(const Row& row, double r) const;
+  void add_plain_strip(const Row& from, const Row& to, Piece patch, std::uint8_t zone);
+  Status check_no_overhang(const Row& row) const;
   double distance_near(const RingRows& ring, std::size_t strip, std::size_t column, const Vec3& p, double enough) const;
   const Vec3& at(const Row& row, std::size_t j) const { return out_.mesh.vertices[std::size_t(row.index[j])]; }
+  double h_of(const Row& row, std::size_t j) const { return chart_.up(at(row, j)); }
+  double s_of(const Row& row) const { return chart_.along(at(row, 0)); }
 
-  const face_gear::FaceGear& gear_;
+  const ToothedSolid& gear_;
   const ToothGrid& grid_;
+  tooth_space::Chart chart_;
   std::vector<GridColumn> columns_;
   std::vector<RingRows> rings_;
   ToothMesh out_;
-  double cylinder_sag_ = 0;
+  double turned_sag_ = 0;  ///< of facets on surfaces of revolution
 };
 
 }  // namespace toothpath::mesh

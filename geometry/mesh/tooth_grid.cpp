@@ -12,9 +12,9 @@ constexpr std::size_t kLeastGridRows = 2;
 
 using Lines = std::vector<std::vector<Vec3>>;  // [row][column]
 
-/// Radius at parameter u in [0, 1]. Even steps in u crowd at the inner end, where the curvature grows like 1/(r - R1c)
-/// next to an undercut: its square root is then even in u.
-double radius_at(const std::array<double, 2>& span, double u) { return span[0] + (span[1] - span[0]) * u * u; }
+/// Station at parameter u in [0, 1]. Even steps in u crowd at the first end: next to an undercut at s_u the curvature
+/// grows like 1/(s - s_u), and its square root is then even in u.
+double station_at(const std::array<double, 2>& span, double u) { return span[0] + (span[1] - span[0]) * u * u; }
 
 /// Part of the second difference across the line's own direction, per unit parameter.
 double bend(const Vec3& before, const Vec3& at, const Vec3& after) {
@@ -59,7 +59,7 @@ std::size_t ToothGrid::columns() const {
 
 std::size_t ToothGrid::surface_triangles() const {
   std::size_t rows = 0;
-  for (const auto& r : radii) rows += r.size() - 1;
+  for (const auto& s : stations) rows += s.size() - 1;
   return 2 * rows * columns();
 }
 
@@ -72,28 +72,27 @@ std::vector<GridColumn> grid_columns(const ToothGrid& grid) {
   return columns;
 }
 
-Result<GridPlanner> GridPlanner::probe(const face_gear::FaceGear& gear) {
+Result<GridPlanner> GridPlanner::probe(const tooth_space::ToothedSolid& gear) {
   GridPlanner planner;
   for (auto& b : planner.bend_across_) b.assign(kProbes, 0.0);
-  for (std::size_t zone = 0; zone < gear.rings().size(); ++zone) {
-    const face_gear::FaceGearRing& ring = gear.rings()[zone];
-    const double r_in = ring.zone.inner_radius_mm, r_out = ring.zone.outer_radius_mm;
-    planner.span_.push_back({r_in, r_out});
+  for (const auto& ring : gear.rings) {
+    const std::array<double, 2> span{ring.space->outline().s_from, ring.space->outline().s_to};
+    planner.span_.push_back(span);
     std::array<Lines, kSegmentCount> lines;
     std::optional<ToothSection> near;
     for (std::size_t i = 0; i < kProbes; ++i) {
-      const double r = i + 1 == kProbes ? r_out : radius_at({r_in, r_out}, double(i) / double(kProbes - 1));
-      auto section = ToothSection::at(gear.drawn(zone), gear.parameters().teeth, r, near ? &*near : nullptr);
+      const double s = i + 1 == kProbes ? span[1] : station_at(span, double(i) / double(kProbes - 1));
+      auto section = ToothSection::at(*ring.space, s, near ? &*near : nullptr);
       if (!section) return section.error();
       near = *section;
-      for (std::size_t s = 0; s < kSegmentCount; ++s) {
+      for (std::size_t segment = 0; segment < kSegmentCount; ++segment) {
         std::vector<Vec3> line;
         for (std::size_t j = 0; j < kProbes; ++j) {
-          const auto point = near->point(s, double(j) / double(kProbes - 1));
-          if (!point) return fail("{} is not defined at radius {:.4f} mm", to_string(segment_patch(s)), r);
+          const auto point = near->point(segment, double(j) / double(kProbes - 1));
+          if (!point) return fail("{} is not defined at {}", to_string(segment_patch(segment)), near->station());
           line.push_back(point->p);
         }
-        lines[s].push_back(std::move(line));
+        lines[segment].push_back(std::move(line));
       }
     }
     std::vector<double> along(kProbes, 0.0);
@@ -117,11 +116,11 @@ ToothGrid GridPlanner::grid(double sag_mm) const {
   for (std::size_t s = 0; s < kSegmentCount; ++s)
     grid.fractions[s] = equal_shares(bend_across_[s], sag_mm, kLeastCells[s]);
   for (std::size_t k = 0; k < span_.size(); ++k) {
-    std::vector<double> radii = equal_shares(bend_along_[k], sag_mm, kLeastGridRows);
-    for (double& u : radii) u = radius_at(span_[k], u);
-    radii.front() = span_[k][0];
-    radii.back() = span_[k][1];
-    grid.radii.push_back(std::move(radii));
+    std::vector<double> stations = equal_shares(bend_along_[k], sag_mm, kLeastGridRows);
+    for (double& u : stations) u = station_at(span_[k], u);
+    stations.front() = span_[k][0];
+    stations.back() = span_[k][1];
+    grid.stations.push_back(std::move(stations));
   }
   return grid;
 }

@@ -5,15 +5,15 @@
 #include <array>
 #include <vector>
 
-#include "geometry/face_gear/gear.h"
 #include "geometry/mesh/tooth_section.h"
+#include "geometry/tooth_space/toothed_solid.h"
 
 namespace toothpath::mesh {
 
-/// Grid lines of one pitch: rows are radii, columns are fractions of the segments of a section.
+/// Grid lines of one pitch: rows are stations along the teeth, columns are fractions of the segments of a section.
 struct ToothGrid {
   std::array<std::vector<double>, kSegmentCount> fractions;  ///< 0 .. 1 increasing, the same for all rings
-  std::vector<std::vector<double>> radii;                    ///< one list a ring, inner to outer radius, mm
+  std::vector<std::vector<double>> stations;                 ///< one list a ring, s from end to end, mm
 
   /// Cells across one pitch.
   [[nodiscard]] std::size_t columns() const;
@@ -33,7 +33,7 @@ struct GridColumn {
 class GridPlanner {
  public:
   /// Refused: as `ToothSection::at`.
-  static Result<GridPlanner> probe(const face_gear::FaceGear& gear);
+  static Result<GridPlanner> probe(const tooth_space::ToothedSolid& gear);
 
   /// Grid whose cells sag by about `sag_mm` in each of the two directions.
   [[nodiscard]] ToothGrid grid(double sag_mm) const;
@@ -42,7 +42,7 @@ class GridPlanner {
   std::array<std::vector<double>, kSegmentCount> bend_across_;  ///< second derivative by fraction, mm
   std::vector<std::vector<double>> bend_along_;  ///< the same by the root of the fraction of the face width,
                                                  ///< one list a ring
-  std::vector<std::array<double, 2>> span_;      ///< inner and outer radius of each ring
+  std::vector<std::array<double, 2>> span_;      ///< s of both ends of each ring
 };
 
 }  // namespace toothpath::mesh

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
-#include "geometry/face_gear/space_sheet.h"
 #include "geometry/mesh/pitch_builder.h"
 
 namespace toothpath::mesh {
@@ -12,7 +11,6 @@ namespace {
 
 constexpr double kLeastTolerance_mm = 1e-4, kMostTolerance_mm = 10;
 constexpr std::size_t kMostPitchTriangles = 1'000'000, kMostGearTriangles = 40'000'000;
-constexpr double kBaseModules = 2.5;  // thickness below the lowest point of teeth and groove
 constexpr int kMostRefinements = 40;  // on coarse grids many steps of the aim change no cell
 
 using Index = std::int32_t;
@@ -24,14 +22,9 @@ double ToothMesh::max_sag() const { return *std::max_element(max_sag_mm.begin(),
 
 Vec3 ToothMesh::vertex_of_copy(std::size_t index, int k) const {
   const Index from = turned_from[index];
+  if (std::size_t(from) == index) return mesh.vertices[index];
   return from < 0 ? turned_by_pitches(mesh.vertices[index], k, teeth)
                   : turned_by_pitches(mesh.vertices[idx(from)], k + 1, teeth);
-}
-
-double underside_z(const face_gear::FaceGear& gear) {
-  const double lowest = gear.lowest_root();
-  const double floor = gear.rings().size() > 1 ? std::min(lowest, gear.groove_floor()) : lowest;
-  return floor - kBaseModules * gear.parameters().module_mm;
 }
 
 Vec3 turned_by_pitches(const Vec3& p, int k, int teeth) {
@@ -41,7 +34,7 @@ Vec3 turned_by_pitches(const Vec3& p, int k, int teeth) {
   return turned(p, angle);
 }
 
-Result<ToothMesh> mesh_tooth_space(const face_gear::FaceGear& gear, double tolerance_mm) {
+Result<ToothMesh> mesh_tooth_space(const ToothedSolid& gear, double tolerance_mm) {
   if (!(tolerance_mm >= kLeastTolerance_mm && tolerance_mm <= kMostTolerance_mm))
     return fail("mesh tolerance = {:g} mm is outside {:g} .. {:g} mm", tolerance_mm, kLeastTolerance_mm,
                 kMostTolerance_mm);
@@ -72,7 +65,7 @@ Result<ToothMesh> mesh_tooth_space(const face_gear::FaceGear& gear, double toler
   return fail("mesh tolerance = {:g} mm is not reached: the facets still sag by {:g} mm", tolerance_mm, worst);
 }
 
-Result<TriangleMesh> mesh_gear(const face_gear::FaceGear& gear, double tolerance_mm) {
+Result<TriangleMesh> mesh_gear(const ToothedSolid& gear, double tolerance_mm) {
   const auto pitch = mesh_tooth_space(gear, tolerance_mm);
   if (!pitch) return pitch.error();
   const std::size_t triangles = pitch->mesh.triangles.size() * std::size_t(pitch->teeth);
@@ -84,22 +77,34 @@ Result<TriangleMesh> mesh_gear(const face_gear::FaceGear& gear, double tolerance
 
 TriangleMesh join_copies(const ToothMesh& pitch) {
   std::vector<Index> own(pitch.mesh.vertices.size(), -1);
-  Index count = 0;
-  for (std::size_t v = 0; v < own.size(); ++v)
+  Index count = 0, on_axis = 0;
+  for (std::size_t v = 0; v < own.size(); ++v) {
     if (pitch.turned_from[v] < 0) own[v] = count++;
+    if (std::size_t(pitch.turned_from[v]) == v) own[v] = on_axis++;
+  }
   TriangleMesh gear;
   gear.vertices.reserve(std::size_t(count) * std::size_t(pitch.teeth));
   gear.triangles.reserve(pitch.mesh.triangles.size() * std::size_t(pitch.teeth));
   for (int k = 0; k < pitch.teeth; ++k) {
     for (std::size_t v = 0; v < own.size(); ++v)
-      if (own[v] >= 0) gear.vertices.push_back(pitch.vertex_of_copy(v, k));
+      if (pitch.turned_from[v] < 0) gear.vertices.push_back(pitch.vertex_of_copy(v, k));
     const auto joined = [&](Index v) {
       const Index from = pitch.turned_from[idx(v)];
+      if (from == v) return pitch.teeth * count + own[idx(v)];
       return from < 0 ? k * count + own[idx(v)] : ((k + 1) % pitch.teeth) * count + own[idx(from)];
     };
     for (const auto& t : pitch.mesh.triangles) gear.triangles.push_back({joined(t[0]), joined(t[1]), joined(t[2])});
   }
+  for (std::size_t v = 0; v < own.size(); ++v)
+    if (std::size_t(pitch.turned_from[v]) == v) gear.vertices.push_back(pitch.mesh.vertices[v]);
   return gear;
+}
+
+std::vector<double> patch_of_vertices(const ToothMesh& pitch) {
+  std::vector<double> field(pitch.mesh.vertices.size(), double(tooth_space::kSurfaces));
+  for (std::size_t t = pitch.tags.size(); t-- > 0;)
+    for (const auto vertex : pitch.mesh.triangles[t]) field[idx(vertex)] = double(pitch.tags[t].patch);
+  return field;
 }
 
 double signed_volume(const TriangleMesh& mesh) {
@@ -111,46 +116,19 @@ double signed_volume(const TriangleMesh& mesh) {
   return sum / 6;
 }
 
-std::optional<face_gear::SurfacePointT<double>> exact_patch_point(const face_gear::FaceGear& gear, int zone,
-                                                                  Piece patch, const Vec2& uv) {
-  const auto& f = gear.rings()[std::size_t(zone)].surface;
-  const int teeth = gear.parameters().teeth, s = side_of(patch);
-  const auto placed = [&](const Vec3& p, const Vec3& n) {
-    return face_gear::SurfacePointT<double>{turned_by_pitches(p, s < 0 ? 1 : 0, teeth),
-                                            turned_by_pitches(n, s < 0 ? 1 : 0, teeth)};
-  };
-  if (gear.rings()[std::size_t(zone)].modification && s != 0) {
-    const auto at = gear.drawn(std::size_t(zone)).point(patch, uv.x(), uv.y());
-    if (!at) return {};
-    return face_gear::SurfacePointT<double>{at->p, at->n};
-  }
-  switch (patch) {
-    case Piece::flank_plus:
-    case Piece::flank_minus: {
-      const auto at = f.flank(s, uv.x(), uv.y());
-      return placed(at.p, at.n);
-    }
-    case Piece::fillet_plus:
-    case Piece::fillet_minus: {
-      const auto at = f.fillet(s, uv.x(), uv.y());
-      if (!at.defined) return {};
-      return placed(at.p, at.n);
-    }
-    case Piece::root: {
-      const Vec3 left = f.fillet(1, f.shaper.A_e, uv.y()).p;
-      const Vec3 right = turned_by_pitches(f.fillet(-1, f.shaper.A_e, uv.y()).p, 1, teeth);
-      const Vec3 p = turned(left, uv.x() * angle_from_to(left, right));
-      const auto meridian = f.root_meridian(uv.y());
-      return face_gear::SurfacePointT<double>{p, turned(meridian.n, angle_from_to(meridian.p, p))};
-    }
-    case Piece::tip: {
-      const double r = uv.y(), Z = std::sqrt(r * r - f.E * f.E), slope = -f.Cg / f.Sg * r / Z;
-      const Vec3 radial(std::cos(uv.x()), std::sin(uv.x()), 0);
-      return face_gear::SurfacePointT<double>{r * radial + f.z_tip(r) * Vec3::UnitZ(),
-                                              (Vec3::UnitZ() - slope * radial).normalized()};
-    }
-    default: return {};
-  }
+std::optional<tooth_space::PatchPoint> exact_patch_point(const ToothedSolid& gear, int ring, Piece patch,
+                                                         const Vec2& uv) {
+  const auto& space = *gear.rings[std::size_t(ring)].space;
+  if (int(patch) < tooth_space::kPieces) return space.point(patch, uv.x(), uv.y());
+  if (patch != Piece::tip) return {};
+  const auto& chart = space.outline().chart;
+  const double s = uv.y(), h = space.tip(s), slope = space.tip_bend(s, s).slope.middle(), r = chart.r(s, h);
+  const Vec3 outwards(std::cos(uv.x()), std::sin(uv.x()), 0);
+  tooth_space::PatchPoint at;
+  at.p = r * outwards + chart.z(s, h) * Vec3::UnitZ();
+  // Across the meridian's way (1, slope) in (s, h).
+  at.n = (chart.r(-slope, 1) * outwards + chart.z(-slope, 1) * Vec3::UnitZ()).normalized();
+  return at;
 }
 
 }  // namespace toothpath::mesh

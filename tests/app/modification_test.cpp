@@ -9,6 +9,7 @@
 #include "app/process/gear_of_job.h"
 #include "geometry/face_gear/inverse.h"
 #include "geometry/face_gear/limits.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/inspection/grid.h"
 #include "geometry/mesh/bevel_mesh.h"
 #include "tests/app/judged.h"
@@ -295,7 +296,7 @@ TEST(ModifiedGear, InspectionPointsLieOnTheFlanksOfTheWords) {
   const auto gear = process::make_face_gear(job.value());
   ASSERT_TRUE(gear.value_if());
   const auto& f = gear.value_if()->rings()[0].surface;
-  const auto grid = inspection::inspection_grid(*gear.value_if());
+  const auto grid = inspection::inspection_grid(drawn_solid(*gear.value_if()));
   ASSERT_TRUE(grid);
   double off = 0, moved = 0;
   for (const auto& p : *grid) {

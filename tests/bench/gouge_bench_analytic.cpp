@@ -119,7 +119,7 @@ void analytic_rows() {
   proof::GougeResult found;
   const double proofs = proven(part, tool, poses, found);
   for (const double sag : {5e-3, 5e-4}) {
-    const auto mesh = mesh::mesh_gear(gear, sag);
+    const auto mesh = mesh::mesh_gear(drawn_solid(gear), sag);
     if (!mesh) continue;
     const CgalTree tree(*mesh);
     double ball_difference = 0, difference = 0;

@@ -17,6 +17,7 @@
 #include "app/studies/trials/dhfg_summary.h"
 #include "app/tool_library/tool_library.h"
 #include "geometry/base/plain_text.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/mesh/file.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/shaper/control.h"
@@ -197,7 +198,7 @@ ByteReader study_reader() {
 
 ByteReader measured_reader() {
   static const face_gear::FaceGear gear = made(spur_parameters());
-  const auto grid = inspection::inspection_grid(gear, {5, 9});
+  const auto grid = inspection::inspection_grid(drawn_solid(gear), {5, 9});
   std::istringstream in(inspection::inspection_csv(*grid));
   std::string line, csv = "zone,flank,row,column,x,y,z,i,j,k,deviation_um\n";
   std::getline(in, line);
@@ -210,7 +211,7 @@ ByteReader measured_reader() {
 /// Results of measuring machines; every point is sought on the flanks of a gear.
 std::vector<ByteReader> measured_points_readers() {
   static const face_gear::FaceGear gear = made(spur_parameters());
-  const auto grid = inspection::inspection_grid(gear, {5, 9});
+  const auto grid = inspection::inspection_grid(drawn_solid(gear), {5, 9});
   std::string plain = "# x y z i j k\n", saved = "Point;X [mm];Y [mm];Z [mm]\n",
               dmis = "UNITS/MM,ANGDEC\nFA(C)=FEAT/GSURF\nPTDATA/CART,1,2,3\n";
   for (const auto& p : *grid) {

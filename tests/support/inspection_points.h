@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "geometry/face_gear/gear.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/inspection/grid.h"
 
 namespace toothpath::test {
@@ -13,7 +14,7 @@ inline std::vector<inspection::InspectionPoint> grid_of(const face_gear::FaceGea
   inspection::InspectionOptions options;
   options.rows = rows;
   options.columns = columns;
-  return *inspection_grid(gear, options);
+  return *inspection_grid(drawn_solid(gear), options);
 }
 
 }  // namespace toothpath::test

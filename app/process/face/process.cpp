@@ -15,7 +15,8 @@
 #include "app/report/svg/html_text.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/ball/plan.h"
-#include "geometry/exchange/face_shell.h"
+#include "cam/rest/toothed_blank.h"
+#include "geometry/exchange/tooth_shell.h"
 #include "geometry/face_gear/part.h"
 #include "geometry/mesh/tooth_mesh.h"
 
@@ -107,8 +108,8 @@ class FaceProcess final : public process::GearProcess {
   }
   [[nodiscard]] sheet::PartOutline outline() const override {
     const double root = gear_.lowest_root();
-    return {gear_.inner_radius(),     gear_.outer_radius(),          gear_.blank_top(), root,
-            mesh::underside_z(gear_), gear_words(gear_.parameters())};
+    return {gear_.inner_radius(),          gear_.outer_radius(),          gear_.blank_top(), root,
+            face_gear::underside_z(gear_), gear_words(gear_.parameters())};
   }
   [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override {
     const face_gear::FaceGearParameters& p = gear_.parameters();
@@ -126,7 +127,7 @@ class FaceProcess final : public process::GearProcess {
     return out;
   }
   [[nodiscard]] Result<process::FinishedGear> solid() const override {
-    const auto pitch = mesh::mesh_tooth_space(gear_, kSolidSag);
+    const auto pitch = mesh::mesh_tooth_space(drawn_solid(gear_), kSolidSag);
     if (!pitch) return process::located(job_, "gear", pitch.error());
     process::FinishedGear out{
         mesh::join_copies(*pitch), {}, [root = gear_.lowest_root()](const Vec3& p) { return p.z() > root; }};
@@ -137,39 +138,20 @@ class FaceProcess final : public process::GearProcess {
     return out;
   }
   [[nodiscard]] Result<mesh::TriangleMesh> mesh() const override {
-    const auto pitch = mesh::mesh_tooth_space(gear_, kStlSag);
+    const auto pitch = mesh::mesh_tooth_space(drawn_solid(gear_), kStlSag);
     if (!pitch) return pitch.error();
     return mesh::join_copies(*pitch);
   }
   [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh(process::FacetSize size) const override {
     const double picture = kPictureSag * gear_.parameters().module_mm;
-    auto pitch = mesh::mesh_tooth_space(gear_, size == process::FacetSize::picture ? picture : kStlSag);
+    auto pitch = mesh::mesh_tooth_space(drawn_solid(gear_), size == process::FacetSize::picture ? picture : kStlSag);
     if (!pitch) return process::located(job_, "gear", pitch.error());
     return std::move(pitch->mesh);
   }
   [[nodiscard]] rest::Blank blank() const override {
-    rest::Blank out;
-    out.teeth = part_.teeth;
-    const auto& rings = gear_.rings();
-    for (std::size_t k = 0; k < rings.size(); ++k) {
-      const auto& zone = rings[k].zone;
-      out.rings.push_back({zone.inner_radius_mm, zone.outer_radius_mm,
-                           [surface = rings[k].surface, above = gear_.parameters().allowance_top_mm](double r) {
-                             return surface.z_tip(r) + above;
-                           },
-                           [](double) { return 0.0; }, gear_.lowest_root()});
-      if (k + 1 < rings.size())
-        out.corners.push_back(
-            {{zone.outer_radius_mm, gear_.groove_floor()}, {rings[k + 1].zone.inner_radius_mm, gear_.groove_floor()}});
-    }
-    const double under = mesh::underside_z(gear_);
-    out.corners.push_back({{gear_.outer_radius(), under}, {gear_.inner_radius(), under}});
-    out.place = [](double r, double z, double azimuth) {
-      return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), z);
-    };
-    return out;
+    return rest::blank_of(drawn_solid(gear_), gear_.parameters().allowance_top_mm);
   }
-  [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::face_gear_shell(gear_); }
+  [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::tooth_shell(drawn_solid(gear_)); }
   [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
                                    const std::vector<std::string>& assumed, app::StageClock& clock,
                                    std::vector<std::string>& files) const override {

@@ -5,6 +5,7 @@
 #include "app/report/limits/chart.h"
 #include "app/report/limits/json.h"
 #include "app/report/page/study_page.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/inspection/dmis.h"
 #include "geometry/inspection/grid.h"
 
@@ -13,29 +14,20 @@ namespace {
 
 constexpr double kVtpSag = 0.002;  // mm
 
-/// Number of the patch that the first triangle at each vertex belongs to.
-std::vector<double> patch_of_vertices(const mesh::ToothMesh& pitch) {
-  std::vector<double> field(pitch.mesh.vertices.size(), static_cast<double>(tooth_space::kSurfaces));
-  for (std::size_t t = pitch.tags.size(); t-- > 0;)
-    for (const auto vertex : pitch.mesh.triangles[t])
-      field[static_cast<std::size_t>(vertex)] = static_cast<double>(pitch.tags[t].patch);
-  return field;
-}
-
 Result<std::string> gear_text(const face_gear::FaceGear& gear, const std::string& job_name) {
-  const auto pitch = mesh::mesh_tooth_space(gear, kStlSag);
+  const auto pitch = mesh::mesh_tooth_space(drawn_solid(gear), kStlSag);
   if (!pitch) return pitch.error();
   return process::stl_text(*pitch, job_name);
 }
 
 Result<std::string> pitch_text(const face_gear::FaceGear& gear) {
-  const auto pitch = mesh::mesh_tooth_space(gear, kVtpSag);
+  const auto pitch = mesh::mesh_tooth_space(drawn_solid(gear), kVtpSag);
   if (!pitch) return pitch.error();
   return process::vtp_text(pitch->mesh, patch_of_vertices(*pitch));
 }
 
 Result<std::string> inspection_text(const face_gear::FaceGear& gear) {
-  const auto points = inspection::inspection_grid(gear);
+  const auto points = inspection::inspection_grid(drawn_solid(gear));
   if (!points) return points.error();
   return inspection_csv(*points);
 }
@@ -53,7 +45,7 @@ Status write_surface_files(app::OutputDir& output, const face_gear::FaceGear& ge
                                 page::standalone_svg(limits::limit_charts(gear)[2 * zone]));
         !s)
       return s;
-  const auto dmis = inspection::inspection_grid(gear);
+  const auto dmis = inspection::inspection_grid(drawn_solid(gear));
   if (!dmis) return dmis.error();
   if (const auto s = to.write("inspection.dmi", inspection::inspection_dmis(gear, *dmis, job_name)); !s) return s;
   if (const auto s = to.write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); }));

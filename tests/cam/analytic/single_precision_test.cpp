@@ -29,7 +29,7 @@ float single_distance(const Eigen::Vector3f& c, const Eigen::Vector3f& a, const 
 TEST(Proof, SinglePrecisionFacetsWouldMissAMicrometre) {
   const face_gear::FaceGear gear = made(quarter_dhfg());
   const analytic::GearDistance part(face_gear::part_of(gear), 1.0);
-  const auto pitch = mesh::mesh_tooth_space(gear, 0.01);
+  const auto pitch = mesh::mesh_tooth_space(drawn_solid(gear), 0.01);
   ASSERT_TRUE(pitch);
   std::vector<Eigen::Vector3f> v;
   for (const auto& p : pitch->mesh.vertices) v.push_back(p.cast<float>());
@@ -40,8 +40,8 @@ TEST(Proof, SinglePrecisionFacetsWouldMissAMicrometre) {
     const std::size_t t = random.index(pitch->tags.size());
     if (!is_flank(pitch->tags[t].patch)) continue;
     const auto& uv = pitch->tags[t].uv;
-    const auto q =
-        mesh::exact_patch_point(gear, pitch->tags[t].zone, pitch->tags[t].patch, (uv[0] + uv[1] + uv[2]) / 3);
+    const auto q = mesh::exact_patch_point(drawn_solid(gear), pitch->tags[t].zone, pitch->tags[t].patch,
+                                           (uv[0] + uv[1] + uv[2]) / 3);
     if (!q) continue;
     const Vec3 c = q->p + (R - depth) * q->n;
     if (std::abs(part.nearest(c, R + 0.1).distance - (R - depth)) > 1e-9) continue;  // another surface is nearer

@@ -1,6 +1,8 @@
 // Cylindrical gears that tests share.
 #pragma once
 
+#include <vector>
+
 #include "geometry/base/angle.h"
 #include "geometry/cylindrical/gear.h"
 
@@ -44,6 +46,10 @@ inline cylindrical::CylindricalParameters left_helical() {
   g.thickness_allowance_mm = -0.03;
   g.zones = {{radians(-18), 4, 22}};
   return g;
+}
+
+inline std::vector<cylindrical::CylindricalParameters> cylindrical_samples() {
+  return {shifted_spur(), double_helical_pinion(), left_helical()};
 }
 
 inline cylindrical::CylindricalGear made(const cylindrical::CylindricalParameters& g) {

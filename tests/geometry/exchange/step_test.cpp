@@ -1,13 +1,16 @@
 // The STEP file of a gear, read back: a closed shell, and its teeth against the exact surfaces.
 #include <gtest/gtest.h>
 
+#include "geometry/cylindrical/part.h"
 #include "geometry/exchange/bevel_shell.h"
-#include "geometry/exchange/face_shell.h"
 #include "geometry/exchange/step_gear.h"
+#include "geometry/exchange/tooth_shell.h"
 #include "geometry/face_gear/inverse.h"
 #include "geometry/face_gear/limits.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/face_gear/space_sheet.h"
 #include "tests/geometry/bevel_gear/samples.h"
+#include "tests/geometry/cylindrical/samples.h"
 #include "tests/geometry/exchange/step_reader.h"
 #include "tests/geometry/mesh/samples.h"
 #include "tests/support/random.h"
@@ -41,8 +44,8 @@ std::string step_or_fail(const Result<exchange::GearShell>& shell, exchange::Ste
   return *text;
 }
 
-void expect_solid(const StepReader& step, const std::string& what) {
-  const auto faults = faults_of(step, kEdge_mm);
+void expect_solid(const StepReader& step, const std::string& what, long holes = 1) {
+  const auto faults = faults_of(step, kEdge_mm, holes);
   for (std::size_t k = 0; k < std::min<std::size_t>(faults.size(), 5); ++k) ADD_FAILURE() << what << ": " << faults[k];
 }
 
@@ -119,7 +122,7 @@ void expect_exact(const face_gear::FaceGear& gear, const StepReader& step, const
 TEST(StepOfFaceGears, ClosedShellsOfExactTeeth) {
   for (const MeshSample& sample : mesh_samples()) {
     const face_gear::FaceGear gear = made(sample.gear);
-    const StepReader step(step_or_fail(exchange::face_gear_shell(gear)));
+    const StepReader step(step_or_fail(exchange::tooth_shell(drawn_solid(gear))));
     expect_solid(step, sample.name);
     expect_exact(gear, step, sample.name);
   }
@@ -129,7 +132,7 @@ TEST(StepOfFaceGears, SamplesOfTheJobs) {
   for (const auto& parameters : {small_spur(), quarter_dhfg(), offset_gear(), steep_gear(70, 76, 86)}) {
     const face_gear::FaceGear gear = made(parameters);
     exchange::StepCounts counts;
-    const StepReader step(step_or_fail(exchange::face_gear_shell(gear), &counts));
+    const StepReader step(step_or_fail(exchange::tooth_shell(drawn_solid(gear)), &counts));
     const std::string what = fmt::format("{} teeth", parameters.teeth);
     expect_solid(step, what);
     expect_exact(gear, step, what);
@@ -140,7 +143,7 @@ TEST(StepOfFaceGears, SamplesOfTheJobs) {
 }
 
 TEST(StepOfFaceGears, TopLandsLookUp) {
-  const StepReader step(step_or_fail(exchange::face_gear_shell(made(small_spur()))));
+  const StepReader step(step_or_fail(exchange::tooth_shell(drawn_solid(made(small_spur())))));
   std::size_t lands = 0;
   for (const int id : step.faces()) {
     const ReadFace face = step.face(id);
@@ -172,7 +175,7 @@ TEST(StepOfFaceGears, RandomGears) {
     p.zones = {{beta, from, from + random(0.3, 0.95) * (outer - from)}};
     const auto gear = face_gear::FaceGear::make(p);
     if (!gear) continue;
-    const auto text = step_of(exchange::face_gear_shell(*gear));
+    const auto text = step_of(exchange::tooth_shell(drawn_solid(*gear)));
     if (!text) {
       ADD_FAILURE() << k << ": " << text.error().message;
       continue;
@@ -246,8 +249,51 @@ TEST(StepOfBevelGears, ClosedShellsOfExactTeeth) {
 }
 
 /// The checks above find what they are there to find.
+TEST(StepOfCylindricalGears, ClosedShellsOfExactTeeth) {
+  auto without_bore = double_helical_pinion();
+  without_bore.bore_diameter_mm = 0;
+  auto level_groove = double_helical_pinion();
+  level_groove.groove_diameter_mm = made(level_groove).root_diameter();
+  for (const auto& parameters : {shifted_spur(), double_helical_pinion(), without_bore, level_groove}) {
+    const cylindrical::CylindricalGear gear = made(parameters);
+    const tooth_space::ToothedSolid solid = drawn_solid(gear);
+    exchange::StepCounts counts;
+    const StepReader step(step_or_fail(exchange::tooth_shell(solid), &counts));
+    const std::string what = fmt::format("{} teeth, bore {}", parameters.teeth, parameters.bore_diameter_mm);
+    expect_solid(step, what, parameters.bore_diameter_mm > 0 ? 1 : 0);
+    EXPECT_EQ(counts.faces, step.faces().size());
+    std::size_t seen = 0;
+    for (const NamedPatch& patch : patches_of(step)) {
+      if (patch.tooth > 1) continue;
+      ++seen;
+      const auto& space = gear.space(int(patch.ring));
+      double worst = 0;
+      for (int i = 0; i < kGrid; ++i)
+        for (int j = 0; j < kGrid; ++j) {
+          const Vec3 p = spline_at(patch.surface, double(i) / (kGrid - 1), double(j) / (kGrid - 1));
+          if (patch.strip == "top land") {
+            worst = std::max(worst, std::abs(radius(p) - 0.5 * gear.tip_diameter()));
+          } else if (patch.strip == "root") {
+            worst = std::max(worst, std::abs(radius(p) - 0.5 * gear.root_diameter()));
+          } else {
+            // Pieces of side -1 are named after the tooth behind their space.
+            const bool plus = patch.strip.ends_with("+1"), flank = patch.strip.starts_with("flank");
+            const auto piece = flank ? tooth_space::flank_of(plus ? 1 : -1) : tooth_space::fillet_of(plus ? 1 : -1);
+            const Vec3 home = turned(p, -(patch.tooth - (plus ? 0 : 1)) * space.outline().pitch);
+            const auto& k = space.kernel();
+            const double u = flank ? k.theta_at(std::max(radius(p), k.r_b)) : 0.5 * (k.alpha_n + k.quarter);
+            const auto foot = space.foot(piece, home, u, p.z());
+            worst = std::max(worst, foot ? std::abs(foot->distance) : INFINITY);
+          }
+        }
+      EXPECT_LE(worst, kEdge_mm) << what << ": " << patch.strip << " of tooth " << patch.tooth;
+    }
+    EXPECT_GE(seen, 11 * parameters.zones.size()) << what;
+  }
+}
+
 TEST(StepFaults, AreFound) {
-  const std::string good = step_or_fail(exchange::face_gear_shell(made(small_spur())));
+  const std::string good = step_or_fail(exchange::tooth_shell(drawn_solid(made(small_spur()))));
   ASSERT_TRUE(faults_of(StepReader(good), kEdge_mm).empty());
   std::string turned_round = good;
   const std::size_t oriented = turned_round.find(",.T.);", turned_round.find("ORIENTED_EDGE('',*,*,"));
@@ -273,7 +319,7 @@ TEST(StepFaults, AreFound) {
 
 TEST(StepFaults, APatchOffByTwiceTheToleranceIsFound) {
   const face_gear::FaceGear gear = made(small_spur());
-  const auto shell = exchange::face_gear_shell(gear);
+  const auto shell = exchange::tooth_shell(drawn_solid(gear));
   auto fitted = exchange::fit_shell(*shell);
   ASSERT_TRUE(fitted);
   for (Vec3& p : fitted->rings[0].strips[0].control) p = turned(p, 2 * kFitTolerance_mm / 60);
@@ -290,14 +336,14 @@ TEST(StepFaults, APatchOffByTwiceTheToleranceIsFound) {
 TEST(StepRefusals, SayWhatAndWhere) {
   face_gear::FaceGearParameters p = double_helical_parameters();
   p.groove_depth_mm = 11.25 + 1e-5;  // a hair below the root
-  auto shell = exchange::face_gear_shell(made(p));
+  auto shell = exchange::tooth_shell(drawn_solid(made(p)));
   ASSERT_FALSE(shell);
   EXPECT_NE(shell.error().message.find("0.000010 mm below the root"), std::string::npos) << shell.error().message;
   EXPECT_NE(shell.error().message.find("stock.groove_depth"), std::string::npos) << shell.error().message;
 
   p = small_spur();
   p.shaper_tip_radius_mm = largest_tip_radius(p, 0) - 1e-4;
-  shell = exchange::face_gear_shell(made(p));
+  shell = exchange::tooth_shell(drawn_solid(made(p)));
   ASSERT_FALSE(shell);
   EXPECT_NE(shell.error().message.find("root land = "), std::string::npos) << shell.error().message;
 }

@@ -8,6 +8,7 @@
 
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/flank_correction.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/face_gear/space_sheet.h"
 #include "geometry/inspection/grid.h"
 #include "tests/support/sample_gears.h"
@@ -25,7 +26,7 @@ face_gear::FaceGear gear_of(double offset, double helix_deg, double shaft_deg) {
 std::vector<face_gear::FlankDeviation> field_on_grid(const face_gear::FaceGear& gear, int side,
                                                      const std::function<double(double, double)>& field) {
   std::vector<face_gear::FlankDeviation> out;
-  const auto grid = inspection::inspection_grid(gear);
+  const auto grid = inspection::inspection_grid(drawn_solid(gear));
   EXPECT_TRUE(grid);
   for (const auto& p : *grid)
     if (p.side == side)
@@ -127,7 +128,7 @@ TEST_P(CorrectedSheet, DisplacesTheGridByMinusTheDeviation) {
   const auto [E, beta, gamma] = GetParam();
   const auto nominal = gear_of(E, beta, gamma), gear = nominal.corrected({correction_of(nominal)});
   const face_gear::SpaceSheet sheet(gear.parameters(), gear.rings()[0]);
-  const auto grid = inspection::inspection_grid(nominal);
+  const auto grid = inspection::inspection_grid(drawn_solid(nominal));
   for (const auto& p : *grid) {
     const auto q = sheet.at(tooth_space::flank_of(p.side), p.theta, p.B);
     ASSERT_TRUE(q);

@@ -8,6 +8,7 @@
 
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/inverse.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/inspection/dmis.h"
 #include "tests/support/sample_gears.h"
 
@@ -45,7 +46,7 @@ std::vector<double> numbers_after(const std::string& s, const std::string& mark)
 
 TEST(InspectionDmis, EveryPointIsNamedAndMeasuredOnceAtItsPlace) {
   const auto gear = sample_gear();
-  const auto grid = *inspection::inspection_grid(gear);
+  const auto grid = *inspection::inspection_grid(drawn_solid(gear));
   const auto all = statements(inspection::inspection_dmis(gear, grid, "it's a/job, $5"));
   ASSERT_GT(all.size(), 6u);
   EXPECT_EQ(all.front(), "DMISMN/'toothpath it_s a_job_ _5',05.2");
@@ -90,7 +91,7 @@ TEST(InspectionDmis, EveryPointIsNamedAndMeasuredOnceAtItsPlace) {
 /// tooth.
 TEST(InspectionDmis, MovesStayInTheSpaceBesideTheFlank) {
   const auto gear = sample_gear();
-  const auto grid = *inspection::inspection_grid(gear);
+  const auto grid = *inspection::inspection_grid(drawn_solid(gear));
   Vec3 over = Vec3::Zero();
   std::map<std::string, const inspection::InspectionPoint*> point_at;
   for (const auto& s : statements(inspection::inspection_dmis(gear, grid, "job"))) {

@@ -1,4 +1,5 @@
 #include "geometry/inspection/grid.h"
+#include "geometry/face_gear/part.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ class InspectionGrid : public testing::TestWithParam<MeshSample> {
 };
 
 TEST_P(InspectionGrid, PointsLieOnTheirFlankClearOfItsEdges) {
-  const auto grid = inspection::inspection_grid(gear_);
+  const auto grid = inspection::inspection_grid(drawn_solid(gear_));
   ASSERT_TRUE(grid) << grid.error().message;
   EXPECT_EQ(grid->size(), gear_.rings().size() * 2 * 5 * 9);
   for (const inspection::InspectionPoint& point : *grid) {
@@ -41,7 +42,7 @@ TEST_P(InspectionGrid, PointsLieOnTheirFlankClearOfItsEdges) {
 }
 
 TEST_P(InspectionGrid, SweptShaperTouchesEveryPoint) {
-  const auto grid = inspection::inspection_grid(gear_);
+  const auto grid = inspection::inspection_grid(drawn_solid(gear_));
   ASSERT_TRUE(grid);
   for (const inspection::InspectionPoint& point : *grid) {
     const BruteForceFaceGear oracle(gear_.parameters(), gear_.rings()[std::size_t(point.zone)].zone.helix_angle_rad);
@@ -50,7 +51,7 @@ TEST_P(InspectionGrid, SweptShaperTouchesEveryPoint) {
 }
 
 TEST_P(InspectionGrid, CsvReadsBackInOrder) {
-  const auto grid = inspection::inspection_grid(gear_, {7, 11, 0.1});
+  const auto grid = inspection::inspection_grid(drawn_solid(gear_), {7, 11, 0.1});
   ASSERT_TRUE(grid);
   std::istringstream text(inspection::inspection_csv(*grid));
   std::string line;
@@ -86,13 +87,13 @@ INSTANTIATE_TEST_SUITE_P(Samples, InspectionGrid, testing::ValuesIn(mesh_samples
 
 TEST(InspectionGridRefuses, OptionsOutsideTheirRange) {
   const face_gear::FaceGear gear = made(spur_parameters());
-  EXPECT_EQ(inspection::inspection_grid(gear, {4, 9, 0.05}).error().message,
+  EXPECT_EQ(inspection::inspection_grid(drawn_solid(gear), {4, 9, 0.05}).error().message,
             "inspection rows = 4 is outside 5 .. 1000");
-  EXPECT_EQ(inspection::inspection_grid(gear, {5, 8, 0.05}).error().message,
+  EXPECT_EQ(inspection::inspection_grid(drawn_solid(gear), {5, 8, 0.05}).error().message,
             "inspection columns = 8 is outside 9 .. 1000");
-  EXPECT_EQ(inspection::inspection_grid(gear, {5, 9, 0.5}).error().message,
+  EXPECT_EQ(inspection::inspection_grid(drawn_solid(gear), {5, 9, 0.5}).error().message,
             "inspection margin = 0.5 is outside 0 .. 0.4");
-  EXPECT_FALSE(inspection::inspection_grid(gear, {5, 9, NAN}));
+  EXPECT_FALSE(inspection::inspection_grid(drawn_solid(gear), {5, 9, NAN}));
 }
 
 }  // namespace

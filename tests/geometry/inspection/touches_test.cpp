@@ -5,7 +5,8 @@
 
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/inverse.h"
-#include "geometry/inspection/face_touches.h"
+#include "geometry/face_gear/part.h"
+#include "geometry/inspection/tooth_touches.h"
 #include "tests/support/inspection_points.h"
 #include "tests/support/random.h"
 #include "tests/support/sample_gears.h"
@@ -14,7 +15,6 @@
 namespace toothpath {
 namespace {
 
-using inspection::TouchedFaceGear;
 using inspection::TouchOptions;
 using inspection::TouchPlan;
 using inspection::TouchResult;
@@ -27,6 +27,10 @@ struct Trial {
   face_gear::FaceGearParameters parameters;
   TouchOptions options;
 };
+
+inspection::TouchedTeeth touched(const face_gear::FaceGear& gear) {
+  return inspection::TouchedTeeth(drawn_solid(gear), gear.parameters().allowance_top_mm);
+}
 
 std::vector<Trial> trials() {
   return {{"spur", test::small_spur(), {1.0, 0, 1, 0.05, 4}},
@@ -56,7 +60,7 @@ std::vector<TouchResult> read_of(const face_gear::FaceGear& gear, const TouchPla
 TEST(Touches, TheBallAndItsStemMeetNothingButTheirFlank) {
   for (const auto& [name, parameters, options] : trials()) {
     const auto gear = test::made(parameters);
-    const auto plan = inspection::plan_touches(TouchedFaceGear(gear), options);
+    const auto plan = inspection::plan_touches(touched(gear), options);
     ASSERT_TRUE(plan) << name << plan.error().message;
     EXPECT_EQ(plan->touches.size(), std::size_t(options.spaces) * 4) << name;
     EXPECT_GE(plan->gap_mm, options.least_gap_mm);
@@ -99,15 +103,15 @@ TEST(Touches, AGearThatStandsAnywhereIsFound) {
   test::Random random(17);
   for (const auto& [name, parameters, options] : trials()) {
     const auto gear = test::made(parameters);
-    const auto plan = inspection::plan_touches(TouchedFaceGear(gear), options);
+    const auto plan = inspection::plan_touches(touched(gear), options);
     ASSERT_TRUE(plan);
     double worst = 0, worst_turn = 0;
     for (int trial = 0; trial < 20; ++trial) {
       const Vec3 moved = random.vector(0.15);
       const double turn = random(-0.1, 0.1) / gear.outer_radius();
       const test::Stands stands{Mat3(Eigen::AngleAxisd(turn, Vec3::UnitZ())), moved};
-      const auto place = inspection::place_of_part(TouchedFaceGear(gear), *plan, options,
-                                                   read_of(gear, *plan, options, stands), "r.txt");
+      const auto place =
+          inspection::place_of_part(touched(gear), *plan, options, read_of(gear, *plan, options, stands), "r.txt");
       ASSERT_TRUE(place) << name << place.error().text();
       worst = std::max(worst, (place->moved_mm - moved).norm());
       worst_turn = std::max(worst_turn, std::abs(place->clocking_rad - turn) * gear.outer_radius());
@@ -123,7 +127,7 @@ TEST(Touches, AGearThatStandsAnywhereIsFound) {
 TEST(Touches, ABlankIsFoundByItsTopAndRim) {
   const auto gear = test::made(test::small_spur());
   const TouchOptions options{3.0, 0, 1, 0.05, 4};
-  const auto plan = inspection::plan_blank_touches(TouchedFaceGear(gear), options);
+  const auto plan = inspection::plan_blank_touches(touched(gear), options);
   ASSERT_TRUE(plan) << plan.error().message;
   ASSERT_EQ(plan->touches.size(), 8u);
   test::Random random(23);
@@ -143,13 +147,13 @@ TEST(Touches, ABlankIsFoundByItsTopAndRim) {
       EXPECT_LT((centre - t.centre).norm(), 0.9);
       results.push_back({t.number, centre, {"r.txt", t.number, 1}});
     }
-    const auto place = inspection::place_of_part(TouchedFaceGear(gear), *plan, options, results, "r.txt");
+    const auto place = inspection::place_of_part(touched(gear), *plan, options, results, "r.txt");
     ASSERT_TRUE(place) << place.error().text();
     EXPECT_LT((place->moved_mm - moved).norm(), 1e-9);
     EXPECT_EQ(place->clocking_rad, 0);
     auto bad = results;
     bad[3].centre += 0.3 * plan->touches[3].normal;
-    const auto refused = inspection::place_of_part(TouchedFaceGear(gear), *plan, options, bad, "r.txt");
+    const auto refused = inspection::place_of_part(touched(gear), *plan, options, bad, "r.txt");
     ASSERT_FALSE(refused);
     EXPECT_NE(refused.error().message.find("not agree"), std::string::npos);
   }
@@ -159,20 +163,20 @@ TEST(Touches, ABlankIsFoundByItsTopAndRim) {
     EXPECT_TRUE(radius(start) > gear.outer_radius() + 1.5 || start.z() > gear.blank_top() + 1.5);
   }
   const auto conical = test::made(test::conical_gear());
-  const auto cone = inspection::plan_blank_touches(TouchedFaceGear(conical), options);
+  const auto cone = inspection::plan_blank_touches(touched(conical), options);
   ASSERT_FALSE(cone);
-  EXPECT_EQ(cone.error().message, "shaft_angle = 75 deg: the blank has no flat top to touch, 90 deg has");
+  EXPECT_NE(cone.error().message.find("deg: it has no flat top to touch"), std::string::npos) << cone.error().message;
 }
 
 TEST(Touches, ScatterIsToldAndTheStatedDeviationsHold) {
   const auto gear = test::made(test::small_spur());
   TouchOptions options{1.0, 0, 1, 0.05, 12};
-  const auto plan = inspection::plan_touches(TouchedFaceGear(gear), options);
+  const auto plan = inspection::plan_touches(touched(gear), options);
   ASSERT_TRUE(plan);
   const Vec3 moved(0.05, -0.08, 0.03);
   const test::Stands stands{Mat3(Eigen::AngleAxisd(1e-3, Vec3::UnitZ())), moved};
-  const auto place = inspection::place_of_part(TouchedFaceGear(gear), *plan, options,
-                                               read_of(gear, *plan, options, stands, 0.003), "r.txt");
+  const auto place =
+      inspection::place_of_part(touched(gear), *plan, options, read_of(gear, *plan, options, stands, 0.003), "r.txt");
   ASSERT_TRUE(place) << place.error().text();
   EXPECT_GT(place->residual_mm, 0.001);
   EXPECT_LT(place->residual_mm, 0.006);
@@ -186,12 +190,12 @@ TEST(Touches, ScatterIsToldAndTheStatedDeviationsHold) {
 TEST(Touches, WhatIsWrongIsNamed) {
   const auto gear = test::made(test::small_spur());
   const TouchOptions options{1.0, 0, 1, 0.05, 4};
-  const auto plan = inspection::plan_touches(TouchedFaceGear(gear), options);
+  const auto plan = inspection::plan_touches(touched(gear), options);
   ASSERT_TRUE(plan);
   const test::Stands stands{Mat3::Identity(), {0.1, 0, 0}};
   const auto good = read_of(gear, *plan, options, stands);
   const auto error_of = [&](const std::vector<TouchResult>& results) {
-    const auto place = inspection::place_of_part(TouchedFaceGear(gear), *plan, options, results, "r.txt");
+    const auto place = inspection::place_of_part(touched(gear), *plan, options, results, "r.txt");
     return place ? std::string("taken") : place.error().text();
   };
   EXPECT_EQ(error_of(good), "taken");
@@ -218,10 +222,10 @@ TEST(Touches, WhatIsWrongIsNamed) {
   EXPECT_NE(error_of(read_of(gear, *plan, options, leaning)).find("the axis of the gear leans: 0.0500 mm at radius"),
             std::string::npos)
       << error_of(read_of(gear, *plan, options, leaning));
-  const auto large = inspection::plan_touches(TouchedFaceGear(gear), {4.0, 0, 1, 0.05, 4});
+  const auto large = inspection::plan_touches(touched(gear), {4.0, 0, 1, 0.05, 4});
   ASSERT_FALSE(large);
   EXPECT_NE(large.error().message.find("the largest that does is"), std::string::npos) << large.error().message;
-  EXPECT_FALSE(inspection::plan_touches(TouchedFaceGear(gear), {1.0, 0, 1, 0.05, 2}));
+  EXPECT_FALSE(inspection::plan_touches(touched(gear), {1.0, 0, 1, 0.05, 2}));
 }
 
 }  // namespace

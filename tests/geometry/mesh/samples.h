@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/base/angle.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/mesh/tooth_mesh.h"
 #include "tests/support/sample_gears.h"
 
@@ -44,7 +45,7 @@ inline std::vector<MeshSample> mesh_samples() {
 }
 
 inline mesh::ToothMesh meshed(const face_gear::FaceGear& gear, double tolerance_mm) {
-  auto mesh = mesh::mesh_tooth_space(gear, tolerance_mm);
+  auto mesh = mesh::mesh_tooth_space(drawn_solid(gear), tolerance_mm);
   if (!mesh) throw std::runtime_error(mesh.error().message);
   return *std::move(mesh);
 }

@@ -40,7 +40,7 @@ TEST_P(MeshTooth, CornersLieOnTheSurfaceThatTheirTagNames) {
       const Vec3& p = mesh_.mesh.corner(t, k);
       const double r = std::hypot(p.x(), p.y());
       if (is_exact_patch(tag.patch)) {
-        const auto exact = mesh::exact_patch_point(gear_, tag.zone, tag.patch, tag.uv[k]);
+        const auto exact = mesh::exact_patch_point(drawn_solid(gear_), tag.zone, tag.patch, tag.uv[k]);
         ASSERT_TRUE(exact) << to_string(tag.patch);
         ASSERT_LE((exact->p - p).norm(), 1e-9) << to_string(tag.patch) << " uv " << tag.uv[k].transpose();
         ASSERT_GE(r, zone.inner_radius_mm - 1e-9);
@@ -94,7 +94,7 @@ TEST_P(MeshTooth, FacetNormalsFollowTheExactNormals) {
       longest = std::max(longest, (mesh_.mesh.corner(t, k) - mesh_.mesh.corner(t, (k + 1) % 3)).norm());
     if (area.norm() / longest < 4 * mesh_.max_sag_mm[std::size_t(tag.patch)]) continue;
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto exact = mesh::exact_patch_point(gear_, tag.zone, tag.patch, tag.uv[k]);
+      const auto exact = mesh::exact_patch_point(drawn_solid(gear_), tag.zone, tag.patch, tag.uv[k]);
       ASSERT_GT(area.normalized().dot(exact->n), 0.8) << to_string(tag.patch) << " uv " << tag.uv[k].transpose();
     }
   }
@@ -124,7 +124,7 @@ TEST_P(MeshTooth, SagStaysBelowTheStatedBound) {
       double a = unit(random), b = unit(random);
       if (a + b > 1) a = 1 - a, b = 1 - b;
       const Vec2 uv = tag.uv[0] + a * (tag.uv[1] - tag.uv[0]) + b * (tag.uv[2] - tag.uv[0]);
-      const auto exact = mesh::exact_patch_point(gear_, tag.zone, tag.patch, uv);
+      const auto exact = mesh::exact_patch_point(drawn_solid(gear_), tag.zone, tag.patch, uv);
       ASSERT_TRUE(exact);
       const double r = std::hypot(exact->p.x(), exact->p.y());
       if (r < ring.zone.inner_radius_mm || r > ring.zone.outer_radius_mm) continue;
@@ -163,7 +163,7 @@ TEST(MeshToothRefuses, ToleranceOutsideItsRange) {
   const face_gear::FaceGear gear = made(spur_parameters());
   for (const double t :
        {0.0, -1.0, 1e-5, 11.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    const auto mesh = mesh::mesh_tooth_space(gear, t);
+    const auto mesh = mesh::mesh_tooth_space(drawn_solid(gear), t);
     ASSERT_FALSE(mesh) << t;
     EXPECT_EQ(mesh.error().message, fmt::format("mesh tolerance = {:g} mm is outside 0.0001 .. 10 mm", t));
   }
@@ -187,7 +187,7 @@ TEST(MeshToothSpace, CoarseGridsAreRefinedUntilTheyHoldTheTolerance) {
   p.shaper_tip_radius_mm = 0.0559;
   p.zones = {{0, 75.556, 76.426}};
   const auto gear = made(p);
-  const auto mesh = mesh::mesh_tooth_space(gear, 0.002);
+  const auto mesh = mesh::mesh_tooth_space(drawn_solid(gear), 0.002);
   ASSERT_TRUE(mesh) << mesh.error().message;
   EXPECT_LE(mesh->max_sag(), 0.002);
 }
