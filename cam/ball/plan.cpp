@@ -598,8 +598,8 @@ class Planner::Work {
       const Vec3 from = a.centre + above * a.axis, to = b.centre + above * b.axis;
       const Vec2 start = from.head<2>(), way = to.head<2>() - start;
       const double t = way.isZero() ? 0 : std::clamp(-start.dot(way) / way.squaredNorm(), 0.0, 1.0);
-      const tooth_space::Range s = chart.along({(start + t * way).norm(), std::max(start.norm(), to.head<2>().norm())},
-                                               {std::min(from.z(), to.z()), std::max(from.z(), to.z())});
+      const tooth_space::Range r{(start + t * way).norm(), std::max(start.norm(), to.head<2>().norm())},
+          z{std::min(from.z(), to.z()), std::max(from.z(), to.z())}, s = chart.along(r, z);
       low = std::min(low, s.low - widest);
       high = std::max(high, s.high + widest);
     }

@@ -1,0 +1,231 @@
+#include "geometry/straight_bevel/gear.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "geometry/base/angle.h"
+
+namespace toothpath::straight_bevel {
+namespace {
+
+using tooth_space::Piece;
+
+constexpr int kLeastTeeth = 5, kMostTeeth = 2000;
+constexpr double kLeastPitchAngle = 3, kMostPitchAngle = 89.9;  // deg
+constexpr double kElevationShare = 0.95;                        // of the pressure angle, where a crown of involutes ends
+constexpr int kHalvings = 60;
+
+/// The greatest value in (0, most] that a test admits, when smaller ones are better; 0: none is found.
+double largest(double most, const std::function<bool(double)>& does) {
+  double low = 0, high = most;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    (does(middle) ? low : high) = middle;
+  }
+  return low;
+}
+double told(double x) { return std::floor(1e4 * x) / 1e4; }
+
+/// Gathers what is wrong with a gear.
+class Inspection {
+ public:
+  explicit Inspection(const StraightBevelParameters& gear) : gear_(gear) {}
+
+  std::vector<Refusal> refusals;
+
+  void numbers() {
+    if (gear_.teeth < kLeastTeeth || gear_.teeth > kMostTeeth)
+      refuse("teeth", "teeth = {} is outside [{}, {}]", gear_.teeth, kLeastTeeth, kMostTeeth);
+    range("pitch_angle", degrees(gear_.pitch_angle_rad), kLeastPitchAngle, kMostPitchAngle, " deg");
+    range("outer_transverse_module", gear_.outer_transverse_module_mm, 0.05, 100, " mm");
+    range("pressure_angle", degrees(gear_.pressure_angle_rad), 5, 45, " deg");
+    range("thickness_shift", gear_.thickness_shift, -0.5, 0.5, "");
+    range("backlash", gear_.backlash_mm, 0, gear_.outer_transverse_module_mm, " mm");
+    range("least_land", gear_.least_land, 0, 2, "");
+    positive("face_width", gear_.face_width_mm);
+    positive("addendum", gear_.addendum_mm);
+    positive("dedendum", gear_.dedendum_mm);
+    positive("fillet_radius", gear_.fillet_radius_mm);
+    for (const auto& [name, value] : {std::pair{"bore_diameter", gear_.bore_diameter_mm},
+                                      std::pair{"hub_diameter", gear_.hub_diameter_mm},
+                                      std::pair{"hub_length", gear_.hub_length_mm}})
+      if (!(value >= 0)) refuse(name, "{} = {:.6g} mm is below 0", name, value);
+  }
+
+  /// Limits of the blank.
+  void cones(const CrownKernel<double>& w) {
+    if (!(gear_.face_width_mm < 0.9 * w.R_e)) {
+      refuse("face_width", "face_width = {:.4f} mm is not below {:.4f} mm, 0.9 of the outer cone distance",
+             gear_.face_width_mm, 0.9 * w.R_e);
+      return;
+    }
+    if (!(w.theta_f < gear_.pitch_angle_rad))
+      refuse("dedendum", "dedendum = {:.4f} mm gives a root angle of {:.4f} deg, which is not above 0", gear_.dedendum_mm,
+             degrees(gear_.pitch_angle_rad - w.theta_f));
+    const double h_root = -std::tan(w.theta_f) * w.R_i, h_tip = w.tip<double>(-w.R_i);
+    if (!(h_tip > h_root))
+      refuse("tip_angle", "the face cone lies {:.4f} mm below the root cone at the small end", h_root - h_tip);
+    if (gear_.tip_angle_rad && !(std::abs(*gear_.tip_angle_rad - gear_.pitch_angle_rad) < radians(45)))
+      refuse("tip_angle", "tip_angle = {:.4f} deg is not within 45 deg of the pitch angle, {:.4f} deg",
+             degrees(*gear_.tip_angle_rad), degrees(gear_.pitch_angle_rad));
+    if (!(w.psi > 0 && w.psi * w.sin_d < 1))
+      refuse("thickness_shift", "thickness_shift = {:.4f} leaves a space of {:.4f} mm on the outer pitch circle",
+             gear_.thickness_shift, 2 * w.psi * w.R_e);
+    const double most = 2 * (w.R_i * std::sin(gear_.pitch_angle_rad - w.theta_f) * 1.0);
+    if (!(gear_.bore_diameter_mm < most))
+      refuse("bore_diameter", "bore_diameter = {:.4f} mm is not below {:.4f} mm, the root diameter of the small end",
+             gear_.bore_diameter_mm, most);
+    if (gear_.form != Form::spherical_involute) return;
+    const double limit = kElevationShare * gear_.pressure_angle_rad,
+                 tip = std::max(std::atan2(gear_.addendum_mm, w.R_e), std::atan2(h_tip, w.R_i));
+    if (w.theta_f > limit)
+      refuse("dedendum", "dedendum = {:.4f} mm: the crown gear of spherical involutes ends {:.4f} mm below the pitch cone",
+             gear_.dedendum_mm, w.R_e * std::tan(limit));
+    if (tip > limit)
+      refuse("addendum", "addendum = {:.4f} mm: the crown gear of spherical involutes ends {:.4f} mm above the pitch cone",
+             gear_.addendum_mm, w.R_e * std::tan(limit));
+  }
+
+  void rounding(const CrownKernel<double>& w) {
+    if (w.chi >= 0 && w.b_F > 0) return;
+    const double most = largest(gear_.dedendum_mm / (1 - std::sin(gear_.pressure_angle_rad)), [&](double radius) {
+      StraightBevelParameters other = gear_;
+      other.fillet_radius_mm = radius;
+      const CrownKernel<double> k(other);
+      return k.chi >= 0 && k.b_F > 0;
+    });
+    if (most > 0)
+      refuse("fillet_radius", "fillet_radius = {:.4f} mm does not fit on the crown gear's tooth tip; {:.4f} or less would do",
+             gear_.fillet_radius_mm, told(most));
+    else
+      refuse("dedendum", "dedendum = {:.4f} mm: the tip of the crown gear's tooth has no width for a rounding",
+             gear_.dedendum_mm);
+  }
+
+  void undercut(const CrownKernel<double>& w) {
+    const auto cut = [](const CrownKernel<double>& k) { return !(flank_speed(k, k.u_F) > 0); };
+    if (!cut(w)) return;
+    const double most = largest(gear_.dedendum_mm, [&](double dedendum) {
+      StraightBevelParameters other = gear_;
+      other.dedendum_mm = dedendum;
+      const CrownKernel<double> k(other);
+      return k.b_F > 0 && !cut(k);
+    });
+    const std::string way =
+        most > 0 ? fmt::format("a dedendum of {:.4f} mm or less would do, or more pressure angle or fillet_radius", told(most))
+                 : std::string("more pressure angle or more teeth are needed");
+    refuse("dedendum", "dedendum = {:.4f} mm: the crown gear undercuts the flank of {} teeth above the fillet; {}",
+           gear_.dedendum_mm, gear_.teeth, way);
+  }
+
+  void lands(const CrownSpace& space) {
+    const auto& w = space.kernel();
+    const double least = gear_.least_land * gear_.outer_transverse_module_mm;
+    for (const double s : {-w.R_e, -w.R_i}) {
+      const double share = -s / w.R_e;  // widths shrink with the cone distance
+      const double land = top_land_mm(space, s);
+      if (land >= least * share) continue;
+      if (!(land > 0))
+        refuse("addendum", "the flanks do not reach the face cone at cone distance {:.4f} mm, or the tooth is pointed there",
+               -s);
+      else
+        refuse("addendum",
+               "the top land at cone distance {:.4f} mm is {:.4f} mm, the least is {:.4f} mm ({:g} modules there); less "
+               "addendum, or a larger thickness_shift",
+               -s, land, least * share, gear_.least_land);
+      return;
+    }
+  }
+
+ private:
+  template <typename... Args>
+  void refuse(const char* name, fmt::format_string<Args...> text, Args&&... args) {
+    refusals.push_back({name, fail(text, std::forward<Args>(args)...)});
+  }
+  void range(const char* name, double value, double low, double high, const char* unit) {
+    if (!(value >= low && value <= high))
+      refuse(name, "{} = {:.6g}{} is outside [{:g}, {:g}]{}", name, value, unit, low, high, unit);
+  }
+  void positive(const char* name, double value) {
+    if (!(value > 0 && value < 1e5)) refuse(name, "{} = {:.6g} mm is outside (0, 100000) mm", name, value);
+  }
+
+  const StraightBevelParameters& gear_;
+};
+
+class StraightBevelPart final : public tooth_space::ToothedPart {
+ public:
+  explicit StraightBevelPart(StraightBevelGear gear) : gear_(std::move(gear)) {}
+
+  [[nodiscard]] int teeth() const override { return gear_.parameters().teeth; }
+  [[nodiscard]] int zones() const override { return 1; }
+  [[nodiscard]] const tooth_space::ToothSpace& space(int /*zone*/) const override { return gear_.space(); }
+  [[nodiscard]] double module_mm() const override { return gear_.parameters().outer_transverse_module_mm; }
+  [[nodiscard]] double lowest_root() const override { return -gear_.parameters().dedendum_mm; }
+  [[nodiscard]] std::optional<double> groove_floor() const override { return {}; }
+  [[nodiscard]] double blank_top() const override {
+    const auto& ring = gear_.space().outline();
+    return std::max(gear_.space().tip(ring.s_from), gear_.space().tip(ring.s_to));
+  }
+  [[nodiscard]] bool in_blank(const Vec3& p) const override {
+    const auto& ring = gear_.space().outline();
+    const double s = ring.chart.along(p);
+    return s >= ring.s_from && s <= ring.s_to && ring.chart.up(p) <= gear_.space().tip(s) &&
+           radius(p) >= 0.5 * gear_.parameters().bore_diameter_mm;
+  }
+
+ private:
+  StraightBevelGear gear_;
+};
+
+}  // namespace
+
+double pitch_angle(int teeth, int mate_teeth, double shaft_angle_rad) {
+  return std::atan2(std::sin(shaft_angle_rad), double(mate_teeth) / teeth + std::cos(shaft_angle_rad));
+}
+
+double top_land_mm(const CrownSpace& space, double s) {
+  const auto edge = space.tip_edge(-1, s);
+  if (!edge) return 0;
+  // The minus flank of the space stands at the azimuth of its own tooth plus a pitch.
+  const auto& ring = space.outline();
+  const double half_space = edge->azimuth + ring.pitch;
+  return 2 * ring.chart.r(s, space.tip(s)) * (0.5 * ring.pitch - half_space);
+}
+
+double flank_speed(const CrownKernel<double>& w, double u) {
+  // The curve on the unit sphere goes on along n x P, towards the tip where u falls (octoid) or grows (involute).
+  using D = Dual<double, 2>;
+  Vec3T<D> p, n;
+  if (!w.place<D>(Piece::flank_minus, D::variable(u, 0), D(-1.0), p, n)) return 0;
+  const Vec3 along = value(n).cross(value(p));
+  const double sense = w.form == Form::octoid ? -1 : 1;
+  // Outwards the polar angle grows: z falls.
+  return sense * derivative(p, 0).dot(along) * (along.z() < 0 ? 1 : -1);
+}
+
+Expected<StraightBevelGear, std::vector<Refusal>> StraightBevelGear::make(const StraightBevelParameters& parameters) {
+  Inspection inspection(parameters);
+  inspection.numbers();
+  if (!inspection.refusals.empty()) return std::move(inspection.refusals);
+  const CrownKernel<double> kernel(parameters);
+  inspection.cones(kernel);
+  if (inspection.refusals.empty()) inspection.rounding(kernel);
+  if (inspection.refusals.empty()) inspection.undercut(kernel);
+  if (!inspection.refusals.empty()) return std::move(inspection.refusals);
+  StraightBevelGear gear;
+  gear.parameters_ = parameters;
+  gear.space_ = std::make_shared<const CrownSpace>(kernel);
+  inspection.lands(*gear.space_);
+  if (!inspection.refusals.empty()) return std::move(inspection.refusals);
+  return gear;
+}
+
+std::shared_ptr<const tooth_space::ToothedPart> part_of(const StraightBevelGear& gear) {
+  return std::make_shared<StraightBevelPart>(gear);
+}
+
+}  // namespace toothpath::straight_bevel

@@ -1,0 +1,276 @@
+// The engine on gears whose teeth stand out of a cylinder or a cone: distances and tool paths against the solid that a
+// polygon of the profile tells.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include "cam/analytic/gouge_check.h"
+#include "cam/plan/milling.h"
+#include "geometry/base/angle.h"
+#include "geometry/cylindrical/part.h"
+#include "tests/geometry/cylindrical/samples.h"
+#include "tests/geometry/straight_bevel/samples.h"
+#include "tests/support/random.h"
+#include "tests/support/sample_tools.h"
+
+namespace toothpath::test {
+namespace {
+
+using tooth_space::Piece;
+
+cylindrical::CylindricalParameters narrow_spur() {
+  auto g = shifted_spur();
+  g.zones = {{0, -3, 3}};
+  return g;
+}
+cylindrical::CylindricalParameters narrow_pinion() {
+  auto g = double_helical_pinion();
+  g.zones = {{radians(-30), -7, -3.3}, {radians(30), 3.3, 7}};
+  return g;
+}
+/// Far from z = 0: the first space stands turned by more than a turn.
+cylindrical::CylindricalParameters far_helical() {
+  auto g = left_helical();
+  g.zones = {{radians(-18), 1204, 1210}};
+  return g;
+}
+
+/// Does a profile of (azimuth, height) from tip to tip have this place in the material?
+bool under(const std::vector<Vec2>& line, const Vec2& q) {
+  if (q.x() <= line.front().x() || q.x() >= line.back().x()) return true;
+  bool inside = false;
+  for (std::size_t k = 1; k < line.size(); ++k) {
+    const Vec2 &a = line[k - 1], &b = line[k];
+    if ((a.x() <= q.x()) != (b.x() <= q.x()) && q.y() < a.y() + (q.x() - a.x()) / (b.x() - a.x()) * (b.y() - a.y()))
+      inside = !inside;
+  }
+  return inside;
+}
+
+/// The transverse profile of space 0 at z = 0 from tip to tip, by the kernel alone.
+struct Transverse {
+  cylindrical::InvoluteKernel<double> w;
+  std::vector<Vec2> line;  // azimuth, radius
+
+  Transverse(const cylindrical::CylindricalParameters& gear, std::size_t zone) : w(gear, gear.zones[zone]) {
+    constexpr int kPoints = 500;
+    const auto add = [&](Piece piece, double from, double to) {
+      for (int k = 0; k <= kPoints; ++k) {
+        Vec3 p, n;
+        if (w.place<double>(piece, from + (to - from) * k / kPoints, 0.0, p, n)) line.emplace_back(azimuth(p), radius(p));
+      }
+    };
+    const double fillet_from = w.alpha_n, fillet_to = kPi / 2;
+    add(Piece::flank_plus, w.theta_a, w.theta_f);
+    add(Piece::fillet_plus, fillet_from, fillet_to);
+    add(Piece::root, 0, 1);
+    add(Piece::fillet_minus, fillet_to, fillet_from);
+    add(Piece::flank_minus, w.theta_f, w.theta_a);
+  }
+  /// Azimuth and radius of a place in the frame of the profile, turned to space 0.
+  [[nodiscard]] Vec2 seen(const Vec3& p) const {
+    const double pitch = kTwoPi / w.teeth;
+    return {std::remainder(azimuth(p) - w.kappa * p.z(), pitch), radius(p)};
+  }
+  [[nodiscard]] bool in_material(const Vec3& p) const {
+    const Vec2 q = seen(p);
+    return q.y() < w.r_a && under(line, q);
+  }
+};
+
+/// A gear as a question about places, and a box about its teeth.
+struct Solid {
+  std::shared_ptr<const tooth_space::ToothedPart> part;
+  std::function<bool(const Vec3&)> holds;
+
+  /// Distance from a place outside, by directions: the least way to the solid, never less than the truth.
+  [[nodiscard]] double distance(const Vec3& c, double within, int rings) const {
+    double least = within;
+    for (int i = 0; i <= rings; ++i)
+      for (int k = 0; k < std::max(1, 2 * i); ++k)
+        for (const double sign : {1.0, -1.0}) {
+          const double polar = 0.5 * kPi * i / rings, around = kTwoPi * k / std::max(1, 2 * i);
+          const Vec3 d = sign * Vec3(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around),
+                                     std::cos(polar));
+          const int steps = 40;
+          for (int n = 1; n <= steps; ++n) {
+            const double way = least * n / steps;
+            if (!holds(c + way * d)) continue;
+            double out = least * (n - 1) / steps, in = way;
+            for (int h = 0; h < 30; ++h) {
+              const double m = 0.5 * (out + in);
+              (holds(c + m * d) ? in : out) = m;
+            }
+            least = in;
+            break;
+          }
+        }
+    return least;
+  }
+};
+
+Solid solid_of(const cylindrical::CylindricalParameters& gear) {
+  std::vector<Transverse> zones;
+  for (std::size_t k = 0; k < gear.zones.size(); ++k) zones.emplace_back(gear, k);
+  return {cylindrical::part_of(made(gear)), [gear, zones](const Vec3& p) {
+            for (std::size_t k = 0; k < zones.size(); ++k)
+              if (p.z() >= gear.zones[k].from_mm && p.z() <= gear.zones[k].to_mm && zones[k].in_material(p)) return true;
+            return zones.size() > 1 && p.z() > gear.zones[0].to_mm && p.z() < gear.zones[1].from_mm &&
+                   radius(p) < 0.5 * *gear.groove_diameter_mm;
+          }};
+}
+
+/// The profile on the unit sphere: azimuth and polar angle from tip to tip.
+Solid solid_of(const straight_bevel::StraightBevelParameters& parameters) {
+  constexpr int kPoints = 500;
+  const auto gear = straight_bevel::StraightBevelGear::make(parameters).value();
+  const auto& w = gear.space().kernel();
+  const bool octoid = w.form == straight_bevel::Form::octoid;
+  const double tip = w.u_F + (octoid ? -0.5 : 0.4);  // beyond the face cone
+  std::vector<Vec2> line;
+  const auto add = [&](Piece piece, double from, double to) {
+    for (int k = 0; k <= kPoints; ++k) {
+      const Vec3 p = gear.space().point(piece, from + (to - from) * k / kPoints, -1.0)->p;
+      line.emplace_back(azimuth(p), std::atan2(radius(p), p.z()));
+    }
+  };
+  add(Piece::flank_plus, tip, w.u_F);
+  add(Piece::fillet_plus, w.b_F, 0);
+  add(Piece::root, 0, 1);
+  add(Piece::fillet_minus, 0, w.b_F);
+  add(Piece::flank_minus, w.u_F, tip);
+  return {straight_bevel::part_of(gear), [gear, line](const Vec3& p) {
+            const auto& ring = gear.space().outline();
+            const double s = ring.chart.along(p);
+            if (s < ring.s_from || s > ring.s_to || ring.chart.up(p) > gear.space().tip(s)) return false;
+            return under(line, {std::remainder(azimuth(p), ring.pitch), std::atan2(radius(p), p.z())});
+          }};
+}
+
+straight_bevel::StraightBevelParameters narrow_bevel(straight_bevel::Form form) {
+  auto g = khk_pinion(form);
+  g.face_width_mm = 5;
+  return g;
+}
+
+struct Case {
+  const char* name;
+  Solid (*solid)();
+};
+
+class AnyPart : public testing::TestWithParam<Case> {};
+
+TEST_P(AnyPart, DistancesAreThoseOfTheSolid) {
+  const Solid solid = GetParam().solid();
+  const analytic::GearDistance part(solid.part, 2.0);
+  ASSERT_FALSE(part.refusal()) << part.refusal()->diagnostic.message;
+  EXPECT_EQ(part.unproven(), 0u);
+  Random random(11);
+  int outside = 0, inside = 0, near = 0;
+  const tooth_space::Chart& chart = solid.part->chart();
+  for (int n = 0; n < 250; ++n) {
+    const auto& ring = solid.part->space(int(random.index(std::size_t(solid.part->zones())))).outline();
+    const Vec3 c = chart.place(random(ring.s_from - 1, ring.s_to + 1), random(-kPi, kPi),
+                               random(solid.part->lowest_root() - 0.8, solid.part->blank_top() + 1.2));
+    const auto q = part.nearest(c, 1.2);
+    if (solid.holds(c)) {
+      EXPECT_LE(q.distance, 1e-9) << "inside, at " << c.transpose();
+      ++inside;
+      continue;
+    }
+    ++outside;
+    EXPECT_GE(q.distance, -1e-9) << "outside, at " << c.transpose();
+    const double shown = solid.distance(c, 1.2, 14);
+    EXPECT_LE(q.distance, shown + 2e-5) << c.transpose() << " " << q.patch;  // the profile is a polygon
+    // The directions are 6 deg apart: the way to a curved surface is longer by a few percent, to an edge by more.
+    if (q.distance < 1.19) {
+      EXPECT_GE(q.distance, 0.85 * shown - 0.01) << c.transpose() << " " << q.patch;
+      ++near;
+    }
+    EXPECT_LE(part.surface_keeps(c, 1.2), std::max(q.distance, 0.0) + 1e-9);
+  }
+  EXPECT_GT(outside, 60);
+  EXPECT_GT(inside, 40);
+  EXPECT_GT(near, 40);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Gears, AnyPart,
+    testing::Values(Case{"spur", [] { return solid_of(narrow_spur()); }},
+                    Case{"pinion", [] { return solid_of(narrow_pinion()); }},
+                    Case{"far", [] { return solid_of(far_helical()); }},
+                    Case{"octoid", [] { return solid_of(narrow_bevel(straight_bevel::Form::octoid)); }},
+                    Case{"involute", [] { return solid_of(narrow_bevel(straight_bevel::Form::spherical_involute)); }}),
+    [](const testing::TestParamInfo<Case>& c) { return std::string(c.param.name); });
+
+path::MillingOperation operation(path::OperationType type, int tool) {
+  path::MillingOperation o;
+  o.type = type;
+  o.tool = tool;
+  o.speed_rpm = 16000;
+  o.feed_mm_min = 900;
+  return o;
+}
+
+/// Roughing and finishing of one space: proven free of gouges, no place of the tool lies in the solid, and what is left
+/// is what was asked for.
+void tool_paths_cut_the_space_and_nothing_else(const Solid& solid, double ball) {
+  const double R = 0.5 * ball;
+  std::vector<tool::ToolAssembly> tools{ball_mill(ball, 9, ball, 22, 10)};
+  auto rough = operation(path::OperationType::roughing, 0), finish = operation(path::OperationType::finishing, 0);
+  rough.step_down_mm = 0.8 * R;
+  rough.step_over_mm = R;
+  rough.allowance_mm = 0.15;
+  finish.scallop_mm = 0.01;
+  finish.chord_tolerance_mm = 0.002;
+  const analytic::GearDistance part(solid.part, ball::reach_of(tools));
+  auto planned = plan::plan_milling(part, tools, {rough, finish}, {});
+  ASSERT_FALSE(planned.refused()) << planned.refused()->key << ": " << planned.refused()->diagnostic.message;
+  const auto plan = std::move(planned).value();
+  analytic::GougeCheckOptions options;
+  options.rapid_height_mm = solid.part->blank_top();
+  const analytic::GougeCheck check(part, tools, options);
+  for (const auto& path : plan.paths) {
+    const auto checked = check.check_path(path);
+    EXPECT_TRUE(checked) << checked.error().message;
+  }
+  Random random(5);
+  int in = 0;
+  const auto& records = plan.paths[1].records;
+  for (const auto& record : records)
+    for (int k = 0; k < 20; ++k)
+      in += solid.holds(record.tip + R * record.axis + (R - 0.003) * random.vector(1).normalized()) ? 1 : 0;
+  EXPECT_EQ(in, 0) << "of " << 20 * records.size();
+  // The nearest ball of the finishing path leaves no more than the scallop that was asked for.
+  const tooth_space::OffsetSheet surface(solid.part->space(0), 0, solid.part->space(0).outline().s_from,
+                                         solid.part->space(0).outline().s_to, 9);
+  const auto& ring = solid.part->space(0).outline();
+  double highest = 0;
+  for (int i = 1; i < 60; ++i)
+    for (int j = 1; j < 8; ++j) {
+      const auto q = surface.raw(5.0 * i / 60, ring.s_from + (ring.s_to - ring.s_from) * (0.02 + 0.96 * j / 8));
+      if (!q || ring.chart.up(q->contact.p) > solid.part->space(0).tip(ring.chart.along(q->contact.p))) continue;
+      double left = INFINITY;
+      for (std::size_t k = 1; k < records.size(); ++k)
+        if (records[k].kind == path::MoveKind::feed)
+          left = std::min(left, distance_to_segment(q->contact.p, records[k - 1].tip + R * records[k - 1].axis,
+                                                    records[k].tip + R * records[k].axis) -
+                                    R);
+      highest = std::max(highest, left);
+    }
+  EXPECT_LT(highest, 0.0102);
+  EXPECT_GT(highest, 0.001);
+}
+
+TEST(ToolPathsOnACylinder, CutTheSpaceAndNothingElse) {
+  tool_paths_cut_the_space_and_nothing_else(solid_of(narrow_spur()), 2);
+}
+TEST(ToolPathsOnACone, CutTheSpaceAndNothingElse) {
+  tool_paths_cut_the_space_and_nothing_else(solid_of(narrow_bevel(straight_bevel::Form::octoid)), 1.2);
+}
+
+}  // namespace
+}  // namespace toothpath::test
