@@ -12,13 +12,15 @@
 namespace toothpath::ball {
 namespace {
 
-constexpr double kDeepest = 3.0;          // mm: how far a body that cuts in is followed
-constexpr double kSlimmerStep = 0.01;     // mm: to which that is told
-constexpr double kLongestStickOut = 60;   // mm: how much longer a tool is looked for
-constexpr double kSlimmestNeck = 0.5;     // of the ball's diameter
-constexpr double kChange = 0.05;          // mm: to which a length or diameter is told, on the safe side
-constexpr std::array kMore = {0.1, 0.3};  // of a change, and as many mm, beyond what the places want: for the ways
-constexpr double kFirstShare = 0.05;      // of a length or diameter, where no place tells what it wants
+constexpr double kDeepest = 3.0;         // mm: how far a body that cuts in is followed
+constexpr double kSlimmerStep = 0.01;    // mm: to which that is told
+constexpr double kLongestStickOut = 60;  // mm: how much longer a tool is looked for
+constexpr double kSlimmestNeck = 0.5;    // of the ball's diameter
+constexpr double kChange = 0.05;         // mm: to which a length or diameter is told, on the safe side
+/// Of a change, and as many mm, beyond what the places want: for the ways. Where little more than that is given, a plan
+/// costs many times what one with room costs: trials look for plans that are found soon.
+constexpr std::array kMore = {0.1, 0.3, 1.0};
+constexpr double kFirstShare = 0.05;  // of a length or diameter, where no place tells what it wants
 
 std::string place(const BallPass::Point& point) {
   return fmt::format("no five-axis motion either: with the ball at radius {:.3f}, height {:.3f}",

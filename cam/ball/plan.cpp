@@ -11,6 +11,7 @@
 #include "cam/ball/linking.h"
 #include "cam/ball/prescribed_axes.h"
 #include "cam/ball/roughing.h"
+#include "cam/ball/sheet_pass.h"
 #include "cam/ball/tool_direction.h"
 #include "cam/ball/tool_orientation.h"
 #include "cam/tool/cutters.h"
@@ -40,9 +41,6 @@ constexpr double kTurnMargin = 0.02;
 /// that begins close to its limit; and to which a diameter is told, mm.
 constexpr double kSmallerBalls[] = {0.85, 0.7, 0.5, 0.3}, kFartherOut[] = {0.02, 0.05, 0.1, 0.2, 0.4};
 constexpr double kToldSize = 0.01;
-
-/// Steps, of the ball radius, in which the ways of a pass are looked at.
-constexpr double kLookOfWay = 0.2;
 
 // mm beyond the stock that a hop looks for it.
 constexpr double kStockMargin = 0.05;
@@ -462,56 +460,24 @@ class Planner::Work {
     return op.allowance_mm > 0 ? std::min(room, kStockShare * op.allowance_mm) : room;
   }
 
-  /// A planned place at which the ball would cut deeper than may be gouged is refused before any motion is made of it.
+  /// A planned place, or a way between two, at which the ball would cut deeper than may be gouged is refused before any
+  /// motion is made of it.
   [[nodiscard]] std::optional<PlanRefusal> check_passes(const std::vector<BallPass>& passes,
                                                         const tool::ToolAssembly& tool, const std::string& key,
                                                         int zone) const {
-    const double R = tool.radius_mm();
-    struct Deep {
-      const BallPass::Point* point = nullptr;
-      double cut = 0;
-    };
-    std::vector<Deep> first(passes.size());  // in every pass
-    tbb::parallel_for(std::size_t(0), passes.size(), [&](std::size_t k) {
-      for (const auto& p : passes[k].points) {
-        if (!p.touching) continue;
-        const double cut = R - part_.nearest(p.centre, R + 0.01).distance;
-        if (cut <= o_.limits.gouge_mm) continue;
-        first[k] = {&p, cut};
-        return;
-      }
-    });
-    for (const auto& [point, cut] : first)
-      if (point) return cuts_in(tool, key, zone, cut, point->centre, "");
-    return {};
+    const auto deep = first_deep_place(passes, tool.radius_mm(), o_.limits.gouge_mm, distance_within(tool));
+    if (!deep) return {};
+    return cuts_in(tool, key, zone, deep->cut_mm, deep->centre, "");
   }
-
-  /// The same of the ways between the points: a surface that jumps from one wall of a corner to another is no way for a
-  /// ball.
   [[nodiscard]] std::optional<PlanRefusal> check_ways(const std::vector<BallPass>& passes,
                                                       const tool::ToolAssembly& tool, const std::string& key,
                                                       int zone) const {
-    const double R = tool.radius_mm();
-    struct Deep {
-      Vec3 centre = Vec3::Zero();
-      double cut = 0;
-    };
-    std::vector<Deep> first(passes.size());  // in every pass
-    tbb::parallel_for(std::size_t(0), passes.size(), [&](std::size_t n) {
-      const auto& q = passes[n].points;
-      for (std::size_t k = 1; k < q.size() && first[n].cut == 0; ++k) {
-        const Vec3 way = q[k].centre - q[k - 1].centre;
-        const int parts = int(std::ceil(way.norm() / (kLookOfWay * R)));
-        for (int i = 1; i < parts; ++i) {
-          const Vec3 centre = q[k - 1].centre + double(i) / parts * way;
-          const double cut = R - part_.nearest(centre, R + 0.01).distance;
-          if (cut > o_.limits.gouge_mm && cut > first[n].cut) first[n] = {centre, cut};
-        }
-      }
-    });
-    for (const auto& [centre, cut] : first)
-      if (cut > 0) return cuts_in(tool, key, zone, cut, centre, " on the way between two places of a pass");
-    return {};
+    const auto deep = first_deep_way(passes, tool.radius_mm(), o_.limits.gouge_mm, distance_within(tool));
+    if (!deep) return {};
+    return cuts_in(tool, key, zone, deep->cut_mm, deep->centre, " on the way between two places of a pass");
+  }
+  [[nodiscard]] DistanceToPart distance_within(const tool::ToolAssembly& tool) const {
+    return [this, look = tool.radius_mm() + 0.01](const Vec3& centre) { return part_.nearest(centre, look).distance; };
   }
   [[nodiscard]] PlanRefusal cuts_in(const tool::ToolAssembly& tool, const std::string& key, int zone, double cut,
                                     const Vec3& centre, const char* where) const {

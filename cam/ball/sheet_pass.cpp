@@ -1,5 +1,7 @@
 #include "cam/ball/sheet_pass.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,6 +11,7 @@
 namespace toothpath::ball {
 namespace {
 
+constexpr double kLookOfWay = 0.2;      // of the ball's radius: steps in which the ways of a pass are looked at
 constexpr double kLongestRunOut = 1.5;  // way of a run-out along the sheet, of the straight line between its ends
 
 /// Not to and fro: its way is that of a curve, not many times the straight line between its ends.
@@ -16,6 +19,15 @@ bool keeps_on(const std::vector<BallPass::Point>& points) {
   double way = 0;
   for (std::size_t k = 1; k < points.size(); ++k) way += (points[k].centre - points[k - 1].centre).norm();
   return way <= kLongestRunOut * (points.back().centre - points.front().centre).norm();
+}
+
+/// Of every pass its own place, all at once; then the first that has one.
+template <typename DeepOf>
+std::optional<DeepPlace> first_of_passes(const std::vector<BallPass>& passes, const DeepOf& deep_of) {
+  std::vector<std::optional<DeepPlace>> found(passes.size());
+  tbb::parallel_for(std::size_t(0), passes.size(), [&](std::size_t n) { found[n] = deep_of(passes[n].points); });
+  const auto first = std::find_if(found.begin(), found.end(), [](const auto& f) { return f.has_value(); });
+  return first == found.end() ? std::nullopt : *first;
 }
 
 class PassMaker {
@@ -124,6 +136,35 @@ class PassMaker {
 Result<SheetPass> make_sheet_pass(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options,
                                   const SheetPassAsked& asked) {
   return PassMaker(sheet, options, asked).run();
+}
+
+std::optional<DeepPlace> first_deep_place(const std::vector<BallPass>& passes, double ball_radius_mm, double limit_mm,
+                                          const DistanceToPart& distance) {
+  return first_of_passes(passes, [&](const std::vector<BallPass::Point>& points) -> std::optional<DeepPlace> {
+    for (const auto& p : points) {
+      if (!p.touching) continue;
+      const double cut = ball_radius_mm - distance(p.centre);
+      if (cut > limit_mm) return DeepPlace{p.centre, cut};
+    }
+    return {};
+  });
+}
+
+std::optional<DeepPlace> first_deep_way(const std::vector<BallPass>& passes, double ball_radius_mm, double limit_mm,
+                                        const DistanceToPart& distance) {
+  return first_of_passes(passes, [&](const std::vector<BallPass::Point>& points) -> std::optional<DeepPlace> {
+    std::optional<DeepPlace> deepest;
+    for (std::size_t k = 1; k < points.size() && !deepest; ++k) {
+      const Vec3 from = points[k - 1].centre, way = points[k].centre - from;
+      const int parts = int(std::ceil(way.norm() / (kLookOfWay * ball_radius_mm)));
+      for (int i = 1; i < parts; ++i) {
+        const Vec3 centre = from + double(i) / parts * way;
+        const double cut = ball_radius_mm - distance(centre);
+        if (cut > limit_mm && (!deepest || cut > deepest->cut_mm)) deepest = {centre, cut};
+      }
+    }
+    return deepest;
+  });
 }
 
 }  // namespace toothpath::ball

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <functional>
+#include <optional>
+#include <vector>
 
 #include "cam/ball/finishing.h"
 
@@ -28,5 +30,22 @@ struct SheetPass {
 /// inside the ring (undercut) or the sheet cannot be followed.
 [[nodiscard]] Result<SheetPass> make_sheet_pass(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options,
                                                 const SheetPassAsked& asked);
+
+/// Distance of a ball centre from the finished surface, mm.
+using DistanceToPart = std::function<double(const Vec3& centre)>;
+
+/// Where a ball would cut deeper than may be.
+struct DeepPlace {
+  Vec3 centre = Vec3::Zero();
+  double cut_mm = 0;
+};
+/// The first touching point of the first pass at which a ball cuts deeper than `limit_mm`; the distance is asked on all
+/// threads.
+[[nodiscard]] std::optional<DeepPlace> first_deep_place(const std::vector<BallPass>& passes, double ball_radius_mm,
+                                                        double limit_mm, const DistanceToPart& distance);
+/// The same of the straight ways between the points, the deepest place of the first such way: a sheet that jumps from
+/// one wall of a corner to another is no way for a ball.
+[[nodiscard]] std::optional<DeepPlace> first_deep_way(const std::vector<BallPass>& passes, double ball_radius_mm,
+                                                      double limit_mm, const DistanceToPart& distance);
 
 }  // namespace toothpath::ball

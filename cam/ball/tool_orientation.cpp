@@ -212,6 +212,7 @@ class Orienter {
   /// Where that finds nothing: closer stations and the least margin, more than one stroke, finer grids.
   bool search_tight(std::size_t p) {
     std::size_t blocked_at = 0;
+    if (o_.trial) return refuse_trial();
     if (!all_asked_ && any_blocked()) return refuse_place();
     for (const double spacing : {kTightStation, kTightStation / 2}) {
       renew(p, spacing, true);
@@ -224,11 +225,15 @@ class Orienter {
       if (first_blocked(ways_[p])) return refuse_place();
       if (in_strokes(p, finest_, blocked_at)) return true;
     }
-    refusal_ = o_.trial ? OrientationRefusal{} : words_.parted(ways_[p], blocked_at, plans());
+    refusal_ = words_.parted(ways_[p], blocked_at, plans());
     return false;
   }
   bool refuse_place() {
-    refusal_ = o_.trial ? OrientationRefusal{} : words_.blocked(whole_, plans());
+    refusal_ = words_.blocked(whole_, plans());
+    return false;
+  }
+  bool refuse_trial() {
+    refusal_ = OrientationRefusal{};
     return false;
   }
   bool search_strokes(std::size_t p, std::size_t& blocked_at) {
@@ -419,6 +424,7 @@ class Orienter {
       const double spacing = kStation / double(1 << (1 + round / kRoundsOfStations));
       for (const bool tight : {false, true}) {
         if (found || round == kRounds || (ways_[p].tight && !tight)) continue;
+        if (tight && o_.trial) return refuse_trial();
         renew(p, spacing, tight);
         std::size_t blocked_at = 0;
         found = search(p) || (tight && search_strokes(p, blocked_at));

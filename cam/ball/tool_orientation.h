@@ -39,7 +39,8 @@ struct OrientationOptions {
       0.035;  ///< kept from the gear axis where the axis turns: a rotary that carries the work has its pole there
   double widest_lean_rad = 0.66;    ///< of the grid, from the pitch normal
   double farthest_lean_rad = 1.05;  ///< the same where the grid does not do
-  bool trial = false;        ///< asked only whether there are axes: a refusal has no reason and looks for no other tool
+  bool trial = false;  ///< asked only whether there are axes that are found at once: what takes the closer searches
+                       ///< of tight places is refused, without a reason and without a look for other tools
   double chord_mm = 0.0002;  ///< how far the ball centre may leave the pass because the axis turns between two records
 };
 

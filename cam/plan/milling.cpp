@@ -145,20 +145,27 @@ class MillingPlanner {
                       wide ? ball::change_words(now, *wide) : trial.words + ", for this operation alone");
     }
   }
-  /// The same change, made larger until the whole job is planned with it.
+  /// The same change, made larger until the whole job is planned with it: the least of `kTrialShares`, by halves.
   [[nodiscard]] std::optional<tool::ToolAssembly> does_for_all(int tool, const tool::ToolAssembly& least) const {
     const tool::ToolAssembly& now = tools_[std::size_t(tool)];
-    Options options = o_;
-    options.trial = true;
-    options.stage = {};
-    for (const double more : kTrialShares) {
-      const tool::ToolAssembly as = enlarged(now, least, more * now.diameter_mm);
-      if (as.shank_diameter_mm <= 0) return {};
+    const auto as = [&](std::size_t share) { return enlarged(now, least, kTrialShares[share] * now.diameter_mm); };
+    const auto does = [&](const tool::ToolAssembly& trial) {
+      Options options = o_;
+      options.trial = true;
+      options.stage = {};
       std::vector<tool::ToolAssembly> tools = tools_;
-      tools[std::size_t(tool)] = as;
-      if (!MillingPlanner(part_, tools, asked_, options).run({}).refused()) return as;
+      tools[std::size_t(tool)] = trial;
+      return !MillingPlanner(part_, tools, asked_, options).run({}).refused();
+    };
+    if (does(as(0))) return as(0);
+    std::size_t low = 0, high = std::size(kTrialShares) - 1;
+    while (high > 0 && as(high).shank_diameter_mm <= 0) --high;
+    if (high == 0 || !does(as(high))) return {};
+    while (high - low > 1) {
+      const std::size_t middle = (low + high) / 2;
+      (does(as(middle)) ? high : low) = middle;
     }
-    return {};
+    return as(high);
   }
   /// A tool whose change against another one is larger by `more` mm, to a twentieth.
   static tool::ToolAssembly enlarged(const tool::ToolAssembly& now, tool::ToolAssembly as, double more) {

@@ -1,5 +1,8 @@
 // A plan passes its own check, or the planner says what keeps it from one, and what would help.
+#include <ctime>
+
 #include "cam/analytic/body_sweep.h"
+#include "cam/ball/sheet_pass.h"
 #include "geometry/face_gear/part.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
@@ -62,6 +65,57 @@ TEST(OwnCheck, AGapThatIsHardlyMoreThanAskedIsProven) {
     EXPECT_LE(asked.proven_mm, asked.measured_mm) << k;
   }
   EXPECT_GT(undecided, 3);
+}
+
+// Every place of a pass is free, and on the way from one wall of a tooth to the other one the ball goes through it.
+TEST(OwnCheck, AWayThroughATooth) {
+  const auto& job = test::job_named("spur");
+  const auto& path = job.plan.paths.back();
+  const double R = job.tool(path.operation).radius_mm(), limit = 0.002;
+  const auto distance = [&](const Vec3& centre) { return job.part->nearest(centre, R + 0.01).distance; };
+  const auto turned = [&](const Vec3& p) -> Vec3 { return Eigen::AngleAxisd(job.gear.pitch(), Vec3::UnitZ()) * p; };
+  std::vector<ball::BallPass> passes(2);
+  int told = 0;
+  for (std::size_t k = 1; k < path.records.size(); k += 1 + path.records.size() / 60) {
+    const auto &before = path.records[k - 1], &here = path.records[k];
+    if (before.kind != path::MoveKind::feed || here.kind != path::MoveKind::feed || before.pass != here.pass) continue;
+    const Vec3 from = before.tip + R * before.axis, to = here.tip + R * here.axis;
+    passes[0].points = {{from, from, true}, {to, to, true}};
+    passes[1].points = {{to, to, true}, {turned(to), turned(to), true}};
+    EXPECT_FALSE(ball::first_deep_place(passes, R, limit, distance)) << k;
+    EXPECT_FALSE(ball::first_deep_way({passes[0]}, R, limit, distance)) << k;
+    double most = -INFINITY;
+    for (int i = 1; i < 200; ++i) most = std::max(most, R - distance(to + i / 200.0 * (turned(to) - to)));
+    const auto deep = ball::first_deep_way(passes, R, limit, distance);
+    if (most < 0.1) continue;  // above the teeth
+    ASSERT_TRUE(deep) << k;
+    ++told;
+    EXPECT_LE(deep->cut_mm, most + 0.01) << k;
+    EXPECT_GE(deep->cut_mm, most - 0.2 * R) << k;
+    EXPECT_NEAR(R - distance(deep->centre), deep->cut_mm, 1e-12);
+  }
+  EXPECT_GT(told, 10);
+  passes[1].points[1].centre.z() -= 2 * R;
+  EXPECT_TRUE(ball::first_deep_place(passes, R, limit, distance));
+}
+
+double processor_seconds(const std::function<void()>& work) {
+  const std::clock_t from = std::clock();
+  work();
+  return double(std::clock() - from) / CLOCKS_PER_SEC;
+}
+
+// A path that is wrong everywhere is left at its first fault.
+TEST(OwnCheck, AWrongPathIsLeftSoon) {
+  const auto& job = test::job_named("spur");
+  path::ClPath path = job.plan.paths.back();
+  for (auto& record : path.records) record.tip.z() -= 0.3;
+  const analytic::GougeCheck check(*job.part, job.tools, job.check_options());
+  const double all = processor_seconds([&] {
+    EXPECT_FALSE(check.passes(check.check(analytic::GougeCheck::motions_of(path), job.tool_of_operation())));
+  });
+  const double soon = processor_seconds([&] { EXPECT_FALSE(check.check_path(path)); });
+  EXPECT_LT(soon, 0.4 * all);
 }
 
 ball::PlanRefusal refusal_of(std::vector<path::MillingOperation> operations) {

@@ -329,6 +329,21 @@ TEST(Orientation, WhatCannotBeDoneIsRefusedWithThePlace) {
   EXPECT_EQ(refusal_with(short_tool(advised)), "") << "what is advised is planned";
 }
 
+// What is hardly enough costs many times what has room: trials pass it by.
+TEST(Orientation, TrialsTakeAToolThatHasRoom) {
+  const auto thick = [](double shank, double flute) {
+    auto t = test::ball_mill(2, flute, shank, 12 + flute - 6, 40);
+    t.holder = {{40, 40, 40}};
+    return t;
+  };
+  const face_gear::FaceGear gear = test::made(steep_gear());
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({thick(11, 6)}));
+  plan::Options trial;
+  trial.trial = true;
+  EXPECT_TRUE(plan::plan_milling(part, {thick(11, 7.4)}, {test::finishing(0, 0.5, 0.002)}, trial).refused());
+  EXPECT_FALSE(plan::plan_milling(part, {thick(7.35, 6)}, {test::finishing(0, 0.5, 0.002)}, trial).refused());
+}
+
 TEST(Orientation, PlainJobsRunNoSimultaneousSolver) {
   const auto before = ball::orientation_runs();
   const face_gear::FaceGear gear = test::made(test::small_spur());
