@@ -25,6 +25,7 @@ namespace toothpath::proof {
       for (std::size_t k = j + 1; k < places.size(); ++k) {
         const Vec2 c = flat(k);
         const double x = cross(a, b), y = cross(b, c), z = cross(c, a);
+        if (x == 0 && y == 0 && z == 0) continue;  // on one line with the axis: its pieces are asked
         if ((x >= 0 && y >= 0 && z >= 0) || (x <= 0 && y <= 0 && z <= 0)) return 0;
       }
     }

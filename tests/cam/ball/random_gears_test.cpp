@@ -88,7 +88,7 @@ double deepest(const analytic::GearDistance& part, const ball::FinishingPasses& 
       if (std::isnan(q.distance)) return INFINITY;
       double d = q.distance;
       if (!q.exact && ball - d >= kDeepest && std::string_view(q.patch) == "end edge")
-        d = end_edge_distance(sheet_of(part.space(q.zone)), p.centre);
+        d = end_edge_distance(test::sheet_of(part.space(q.zone)), p.centre);
       cut = std::max(cut, ball - d);
     }
   return cut;
@@ -180,7 +180,7 @@ TEST(WideBalls, TrimmedCentresKeepTheRadius) {
   for (const double R : {0.7, 0.75, 0.8, 0.85}) {
     const face_gear::FaceGear gear = test::made(test::small_spur());
     const analytic::GearDistance part(face_gear::part_of(gear), 1.7);
-    const auto& space = sheet_of(part.space(0));
+    const auto& space = test::sheet_of(part.space(0));
     const tooth_space::OffsetSheet sheet(space, R, 60 - R - 0.1, 65 + R + 0.1, 33);
     ASSERT_TRUE(sheet.has_gaps());
     double cut = 0;

@@ -118,5 +118,30 @@ TEST(TurningRapid, NeverCallsATouchClear) {
   EXPECT_GE(near, 2);
 }
 
+/// No sampled place of a body lies lower than the bound, for teeth on a plane, a cylinder and cones that open either way;
+/// and the bound is not far below the lowest of them where the body stands upright.
+TEST(Roof, LiesBelowEveryPlaceOfABody) {
+  test::Random random(3);
+  for (const double angle : {0.0, 0.4, 0.5 * kPi, 2.1})
+    for (int n = 0; n < 200; ++n) {
+      const tooth_space::Chart chart{std::cos(angle), std::sin(angle)};
+      const proof::Roof roof(chart, 40);
+      const tool::RoundedFrustum body{{random(0, 5), random(6, 30), random(0.2, 6), random(0.2, 9), tool::Body::holder}, 0};
+      const Vec3 tip = random.vector(60);
+      const Vec3 axis = n % 2 == 0 ? chart.up_at(azimuth(tip)) : random.vector(1).normalized();
+      const double told = roof.over(body, tip, axis);
+      const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
+      double lowest = INFINITY;
+      for (int i = 0; i <= 20; ++i)
+        for (int j = 0; j < 24; ++j) {
+          const double t = i / 20.0, h = body.core.from + t * (body.core.to - body.core.from),
+                       r = body.core.radius_from + t * (body.core.radius_to - body.core.radius_from), a = j * kPi / 12;
+          lowest = std::min(lowest, chart.up(Vec3(tip + h * axis + r * (std::cos(a) * u + std::sin(a) * v))) - 40);
+        }
+      EXPECT_LE(told, lowest + 1e-9) << angle << " " << n;
+      if (n % 2 == 0) EXPECT_GT(told, lowest - 2.5 * body.widest()) << angle << " " << n;
+    }
+}
+
 }  // namespace
 }  // namespace toothpath
