@@ -16,27 +16,65 @@ using tooth_space::ToothSpace;
 constexpr double kArcNoise_mm = 1e-9;
 /// A fillet that misses the end of its flank by more than this is on another sheet.
 constexpr double kJoin_mm = 1e-7;
-constexpr int kSteps = 12;  // along a piece from one end to the other
-constexpr double kOnStation = 1e-13;
+constexpr double kOnStation = 1e-13;  // of the size of a place
 
 double mixed(double a, double b, double t) { return a + t * (b - a); }
 
-/// v at `u_to` of the line of a piece at station s, in steps from a solved place.
-std::optional<double> followed(const ToothSpace& space, Piece piece, double s, double u_from, double v_from,
-                               double u_to, int steps) {
+struct Solved {
+  double v = 0;
+  Vec3 p = Vec3::Zero();
+};
+
+/// The place of a piece at this u and station s, from a start and a slope ds/dv there. Nothing where it is not found.
+std::optional<Solved> at_station(const ToothSpace& space, Piece piece, double u, double s, double start, double slope) {
+  constexpr int kMostSteps = 40;
   const auto& chart = space.outline().chart;
-  double u = u_from, v = v_from;
-  for (int k = 1; k <= steps; ++k) {
-    const auto q = space.at(piece, u, v);
-    if (!q) return {};
-    const double next = k == steps ? u_to : mixed(u_from, u_to, double(k) / steps);
-    const double slope = -chart.along(q->p, q->pu) / chart.along(q->p, q->pv);
-    const auto solved = v_at_station(space, piece, next, s, std::isfinite(slope) ? v + slope * (next - u) : v);
-    if (!solved) return {};
-    u = next;
-    v = *solved;
+  const double longest = space.longest_step(piece, s);
+  const auto first = space.point(piece, u, start);
+  if (!first) return {};
+  Solved best{start, first->p};
+  const double enough = kOnStation * best.p.norm();
+  double lack = s - chart.along(best.p);
+  for (int k = 0; k < kMostSteps; ++k) {
+    if (std::abs(lack) <= enough) return best;
+    const double step = std::clamp(lack / slope, -longest, longest);
+    if (!std::isfinite(step)) return {};
+    const auto next = space.point(piece, u, best.v + step);
+    if (!next) return {};
+    const double left = s - chart.along(next->p);
+    // Rounding: nothing nearer is found.
+    if (std::abs(left) >= 0.5 * std::abs(lack) && std::abs(lack) <= 100 * enough) return best;
+    if (std::abs(left) > 100 * enough) slope = (lack - left) / step;
+    best = {best.v + step, next->p};
+    lack = left;
   }
-  return v;
+  return {};
+}
+
+/// The line of a piece at station s from a solved place.
+std::optional<SectionLine> followed(const ToothSpace& space, Piece piece, double s, double u_from, double v_from,
+                                    double u_to) {
+  const auto& chart = space.outline().chart;
+  SectionLine line{u_from, u_to, {}};
+  const double step = (u_to - u_from) / SectionLine::kSteps;
+  for (int k = 0; k <= SectionLine::kSteps; ++k) {
+    auto& node = line.nodes[std::size_t(k)];
+    const double u = line.u(double(k) / SectionLine::kSteps);
+    node.v = v_from;
+    if (k > 0) {
+      const auto& before = line.nodes[std::size_t(k - 1)];
+      const double bend = k > 1 ? before.dv - line.nodes[std::size_t(k - 2)].dv : 0;
+      const auto solved = at_station(space, piece, u, s, before.v + step * (before.dv + 0.5 * bend), before.sv);
+      if (!solved) return {};
+      node.v = solved->v;
+    }
+    const auto q = space.at(piece, u, node.v);
+    if (!q) return {};
+    node.sv = chart.along(q->p, q->pv);
+    node.dv = -chart.along(q->p, q->pu) / node.sv;
+    if (!std::isfinite(node.dv)) return {};
+  }
+  return line;
 }
 
 /// v of a piece at station s where no place of it is known; the first solved one that `fits` counts.
@@ -46,37 +84,15 @@ std::optional<double> first_v(const ToothSpace& space, Piece piece, double u, do
   for (int attempt = 0; attempt < ToothSpace::kStarts; ++attempt) {
     const auto start = space.start_v(piece, u, s, 0, near, attempt);
     if (!start) continue;
-    const auto v = v_at_station(space, piece, u, s, *start);
-    if (v && fits(*v)) return v;
+    const auto q = space.at(piece, u, *start);
+    if (!q) continue;
+    const auto solved = at_station(space, piece, u, s, *start, space.outline().chart.along(q->p, q->pv));
+    if (solved && fits(solved->p)) return solved->v;
   }
   return {};
 }
 
 }  // namespace
-
-std::optional<double> v_at_station(const ToothSpace& space, Piece piece, double u, double s, double start) {
-  constexpr int kMostSteps = 40;
-  const auto& chart = space.outline().chart;
-  double v = start;
-  const auto first = space.at(piece, u, v);
-  if (!first) return {};
-  double slope = chart.along(first->p, first->pv), lack = s - chart.along(first->p);
-  const double enough = kOnStation * first->p.norm(), longest = space.longest_step(piece, s);
-  for (int k = 0; k < kMostSteps; ++k) {
-    if (std::abs(lack) <= enough) return v;
-    const double step = std::clamp(lack / slope, -longest, longest);
-    if (!std::isfinite(step)) return {};
-    const auto next = space.point(piece, u, v + step);
-    if (!next) return {};
-    const double left = s - chart.along(next->p);
-    // Rounding: nothing nearer is found.
-    if (std::abs(left) >= 0.5 * std::abs(lack) && std::abs(lack) <= 100 * enough) return v;
-    if (std::abs(left) > 100 * enough) slope = (lack - left) / step;
-    v += step;
-    lack = left;
-  }
-  return {};
-}
 
 Piece segment_patch(std::size_t segment) {
   constexpr std::array<Piece, kSegmentCount> kPatches{Piece::tip,  Piece::flank_plus,   Piece::fillet_plus,
@@ -90,38 +106,29 @@ std::string ToothSection::station() const { return tooth_space::station(space_->
 Result<ToothSection::Side> ToothSection::make_side(const ToothSpace& space, int side, double s,
                                                    const ToothSection* near) {
   const Side* before = near ? &near->sides_[side > 0 ? 0 : 1] : nullptr;
-  std::optional<tooth_space::EdgePlace> start;
-  if (before) start = tooth_space::EdgePlace{before->u_tip, before->v_tip, before->azimuth_tip};
-  const auto tip = space.tip_edge(side, s, start);
+  const auto tip = space.tip_edge(side, s, before ? std::optional(before->tip) : std::nullopt);
   const auto where = [&] { return tooth_space::station(space.outline(), s); };
   if (!tip)
     return fail("flank {:+d} does not reach the tip surface at {} (height {:.4f} mm)", side, where(), space.tip(s));
   const Piece flank = tooth_space::flank_of(side), fillet = tooth_space::fillet_of(side);
   const Borders of_flank = space.borders(flank), of_fillet = space.borders(fillet);
-  Side out{side, tip->u, tip->v, tip->azimuth, 0, 0, 0, 0, 0, 0};
-  out.u_end = side > 0 ? of_flank.to : of_flank.from;
-  out.u_join = side > 0 ? of_fillet.from : of_fillet.to;
-  out.u_root = side > 0 ? of_fillet.to : of_fillet.from;
+  const double u_end = side > 0 ? of_flank.to : of_flank.from, u_join = side > 0 ? of_fillet.from : of_fillet.to,
+               u_root = side > 0 ? of_fillet.to : of_fillet.from;
   // On its tip's side a flank has no border.
   const bool grows = (side > 0 ? of_flank.from : of_flank.to) < 0;
-  if (grows ? out.u_tip >= out.u_end : out.u_tip <= out.u_end)
+  if (grows ? tip->u >= u_end : tip->u <= u_end)
     return fail("flank {:+d} has no involute at {}: its fillet reaches the tip surface", side, where());
-  const auto v_end = followed(space, flank, s, out.u_tip, out.v_tip, out.u_end, kSteps);
-  const auto end = v_end ? space.point(flank, out.u_end, *v_end) : std::nullopt;
+  const auto along_flank = followed(space, flank, s, tip->u, tip->v, u_end);
+  const auto end = along_flank ? space.point(flank, u_end, along_flank->nodes.back().v) : std::nullopt;
   if (!end) return fail("flank {:+d} does not reach its fillet at {}: undercut", side, where());
-  out.v_end = *v_end;
   std::optional<tooth_space::Near> joined;
-  if (before) joined = tooth_space::Near{before->v_join, near->s_};
-  const auto v_join = first_v(space, fillet, out.u_join, s, joined, [&](double v) {
-    const auto q = space.point(fillet, out.u_join, v);
-    return q && (q->p - end->p).norm() <= kJoin_mm;
-  });
+  if (before) joined = tooth_space::Near{before->fillet.nodes.front().v, near->s_};
+  const auto v_join =
+      first_v(space, fillet, u_join, s, joined, [&](const Vec3& p) { return (p - end->p).norm() <= kJoin_mm; });
   if (!v_join) return fail("fillet {:+d} does not join its flank at {}: undercut", side, where());
-  out.v_join = *v_join;
-  const auto v_root = followed(space, fillet, s, out.u_join, out.v_join, out.u_root, kSteps);
-  if (!v_root) return fail("fillet {:+d} does not reach the root at {}", side, where());
-  out.v_root = *v_root;
-  return out;
+  const auto along_fillet = followed(space, fillet, s, u_join, *v_join, u_root);
+  if (!along_fillet) return fail("fillet {:+d} does not reach the root at {}", side, where());
+  return Side{side, *tip, *along_flank, *along_fillet};
 }
 
 Result<ToothSection> ToothSection::at(const ToothSpace& space, double s, const ToothSection* near) {
@@ -133,8 +140,9 @@ Result<ToothSection> ToothSection::at(const ToothSpace& space, double s, const T
     const auto side = make_side(space, sign, s, near);
     if (!side) return side.error();
     section.sides_[k] = *side;
-    section.tip_edge_[k] = space.point(tooth_space::flank_of(sign), side->u_tip, side->v_tip)->p;
-    section.root_edge_[k] = space.point(tooth_space::fillet_of(sign), side->u_root, side->v_root)->p;
+    section.tip_edge_[k] = space.point(tooth_space::flank_of(sign), side->tip.u, side->tip.v)->p;
+    section.root_edge_[k] =
+        space.point(tooth_space::fillet_of(sign), side->fillet.u_to, side->fillet.nodes.back().v)->p;
   }
   const double pitch = space.outline().pitch, at_tip = radius(section.tip_edge_[0]),
                at_root = radius(section.root_edge_[0]);
@@ -152,47 +160,46 @@ Result<ToothSection> ToothSection::at(const ToothSpace& space, double s, const T
     std::optional<tooth_space::Near> before;
     if (near) before = tooth_space::Near{near->root_v_, near->s_};
     const auto v =
-        first_v(space, Piece::root, mixed(of_root.from, of_root.to, 0.5), s, before, [](double) { return true; });
+        first_v(space, Piece::root, mixed(of_root.from, of_root.to, 0.5), s, before, [](const Vec3&) { return true; });
     if (!v) return fail("the root is not defined at {}", section.station());
     section.root_v_ = *v;
+    const auto q = space.at(Piece::root, mixed(of_root.from, of_root.to, 0.5), *v);
+    section.root_sv_ = space.outline().chart.along(q->p, q->pv);
   }
   return section;
 }
 
+/// From the cubic between two nodes.
+std::optional<SectionPoint> ToothSection::on_line(Piece piece, const SectionLine& line, double share) const {
+  const double at = share * SectionLine::kSteps, u = line.u(share);
+  const auto k = std::size_t(std::clamp(int(at), 0, SectionLine::kSteps - 1));
+  const auto &a = line.nodes[k], &b = line.nodes[k + 1];
+  const double t = at - double(k), w = 1 - t, step = (line.u_to - line.u_from) / SectionLine::kSteps;
+  const double start = w * w * (1 + 2 * t) * a.v + t * t * (1 + 2 * w) * b.v + step * t * w * (w * a.dv - t * b.dv);
+  const auto solved = at_station(*space_, piece, u, s_, start, mixed(a.sv, b.sv, t));
+  if (!solved) return {};
+  return SectionPoint{solved->p, {u, solved->v}};
+}
+
 std::optional<SectionPoint> ToothSection::flank_point(const Side& side, double from_tip) const {
-  const Piece piece = tooth_space::flank_of(side.s);
-  if (from_tip <= 0) return SectionPoint{tip_edge_[side.s > 0 ? 0 : 1], {side.u_tip, side.v_tip}};
-  double u = side.u_end, v = side.v_end;
-  if (from_tip < 1) {
-    u = mixed(side.u_tip, side.u_end, from_tip);
-    auto solved = v_at_station(*space_, piece, u, s_, mixed(side.v_tip, side.v_end, from_tip));
-    if (!solved) solved = followed(*space_, piece, s_, side.u_tip, side.v_tip, u, 2 * kSteps);
-    if (!solved) return {};
-    v = *solved;
-  }
-  const auto q = space_->point(piece, u, v);
-  if (!q) return {};
-  return SectionPoint{q->p, {u, v}};
+  if (from_tip <= 0) return SectionPoint{tip_edge_[side.s > 0 ? 0 : 1], {side.tip.u, side.tip.v}};
+  return on_line(tooth_space::flank_of(side.s), side.flank, from_tip);
 }
 
 std::optional<SectionPoint> ToothSection::flank_at(int side, double u) const {
   const Side& of = sides_[side > 0 ? 0 : 1];
-  return flank_point(of, (u - of.u_tip) / (of.u_end - of.u_tip));
+  return flank_point(of, (u - of.flank.u_from) / (of.flank.u_to - of.flank.u_from));
 }
 
 std::optional<SectionPoint> ToothSection::fillet_point(const Side& side, double from_flank) const {
   if (from_flank <= 0) {  // the flank's own bits
     const auto end = flank_point(side, 1);
     if (!end) return {};
-    return SectionPoint{end->p, {side.u_join, side.v_join}};
+    return SectionPoint{end->p, {side.fillet.u_from, side.fillet.nodes.front().v}};
   }
-  if (from_flank >= 1) return SectionPoint{root_edge_[side.s > 0 ? 0 : 1], {side.u_root, side.v_root}};
-  const Piece piece = tooth_space::fillet_of(side.s);
-  const double u = mixed(side.u_join, side.u_root, from_flank);
-  const auto v = v_at_station(*space_, piece, u, s_, mixed(side.v_join, side.v_root, from_flank));
-  const auto q = v ? space_->point(piece, u, *v) : std::nullopt;
-  if (!q) return {};
-  return SectionPoint{q->p, {u, *v}};
+  if (from_flank >= 1)
+    return SectionPoint{root_edge_[side.s > 0 ? 0 : 1], {side.fillet.u_to, side.fillet.nodes.back().v}};
+  return on_line(tooth_space::fillet_of(side.s), side.fillet, from_flank);
 }
 
 std::optional<SectionPoint> ToothSection::root_point(double fraction) const {
@@ -200,11 +207,10 @@ std::optional<SectionPoint> ToothSection::root_point(double fraction) const {
   const double u = mixed(of_root.from, of_root.to, fraction);
   const bool none = root_width_ * radius(root_edge_[0]) <= kArcNoise_mm;
   if (none || fraction <= 0 || fraction >= 1)
-    return SectionPoint{root_edge_[fraction < 0.5 ? 0 : 1], {u, none ? sides_[0].v_root : root_v_}};
-  const auto v = v_at_station(*space_, Piece::root, u, s_, root_v_);
-  const auto q = v ? space_->point(Piece::root, u, *v) : std::nullopt;
-  if (!q) return {};
-  return SectionPoint{q->p, {u, *v}};
+    return SectionPoint{root_edge_[fraction < 0.5 ? 0 : 1], {u, none ? sides_[0].fillet.nodes.back().v : root_v_}};
+  const auto solved = at_station(*space_, Piece::root, u, s_, root_v_, root_sv_);
+  if (!solved) return {};
+  return SectionPoint{solved->p, {u, solved->v}};
 }
 
 SectionPoint ToothSection::land_point(double azimuth) const {

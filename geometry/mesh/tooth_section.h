@@ -25,10 +25,19 @@ struct SectionPoint {
   Vec2 uv = Vec2::Zero();
 };
 
-/// v at which a piece has this u at station s, by Newton from a start; |s - s of the place| <= 1e-13 of its size.
-/// Nothing where it does not arrive.
-[[nodiscard]] std::optional<double> v_at_station(const tooth_space::ToothSpace& space, Piece piece, double u, double s,
-                                                 double start);
+/// The way of a piece along one station, from one u to another: v with its slope at even nodes.
+struct SectionLine {
+  static constexpr int kSteps = 8;
+  struct Node {
+    double v = 0, dv = 0;  ///< and dv/du
+    double sv = 0;         ///< ds/dv across the line
+  };
+  double u_from = 0, u_to = 0;
+  std::array<Node, kSteps + 1> nodes;
+  [[nodiscard]] double u(double share) const {
+    return share >= 1 ? u_to : share <= 0 ? u_from : u_from + share * (u_to - u_from);
+  }
+};
 
 class ToothSection {
  public:
@@ -46,7 +55,7 @@ class ToothSection {
   /// u of a flank where it ends at the fillet and where it meets the tip surface.
   [[nodiscard]] std::array<double, 2> flank_ends(int side) const {
     const Side& of = sides_[side > 0 ? 0 : 1];
-    return {of.u_end, of.u_tip};
+    return {of.flank.u_to, of.flank.u_from};
   }
 
   [[nodiscard]] double s() const { return s_; }
@@ -62,12 +71,12 @@ class ToothSection {
   /// One flank with its fillet.
   struct Side {
     int s = 1;
-    double u_tip = 0, v_tip = 0, azimuth_tip = 0;  ///< where it meets the tip surface
-    double u_end = 0, v_end = 0;                   ///< where it ends
-    double u_join = 0, v_join = 0;                 ///< the fillet there
-    double u_root = 0, v_root = 0;                 ///< and at the root
+    tooth_space::EdgePlace tip;
+    SectionLine flank;   ///< from the tip surface to the fillet
+    SectionLine fillet;  ///< on to the root
   };
   static Result<Side> make_side(const tooth_space::ToothSpace& space, int side, double s, const ToothSection* near);
+  [[nodiscard]] std::optional<SectionPoint> on_line(Piece piece, const SectionLine& line, double share) const;
   [[nodiscard]] std::optional<SectionPoint> flank_point(const Side& side, double from_tip) const;
   [[nodiscard]] std::optional<SectionPoint> fillet_point(const Side& side, double from_flank) const;
   [[nodiscard]] std::optional<SectionPoint> root_point(double fraction) const;
@@ -79,7 +88,7 @@ class ToothSection {
   double mid_azimuth_ = 0;                                     ///< middle of the land of tooth 0
   double half_land_ = 0;                                       ///< half its angle
   double root_width_ = 0;                                      ///< angle of the root land
-  double root_v_ = 0;                                          ///< in its middle
+  double root_v_ = 0, root_sv_ = 0;                            ///< in its middle, with ds/dv
   std::array<Vec3, 2> tip_edge_{Vec3::Zero(), Vec3::Zero()};   ///< where the flanks meet the tip surface
   std::array<Vec3, 2> root_edge_{Vec3::Zero(), Vec3::Zero()};  ///< both ends of the root land
 };
