@@ -139,7 +139,9 @@ TEST(Roof, LiesBelowEveryPlaceOfABody) {
           lowest = std::min(lowest, chart.up(Vec3(tip + h * axis + r * (std::cos(a) * u + std::sin(a) * v))) - 40);
         }
       EXPECT_LE(told, lowest + 1e-9) << angle << " " << n;
-      if (n % 2 == 0) EXPECT_GT(told, lowest - 2.5 * body.widest()) << angle << " " << n;
+      if (n % 2 == 0) {
+        EXPECT_GT(told, lowest - 2.5 * body.widest()) << angle << " " << n;
+      }
     }
 }
 
