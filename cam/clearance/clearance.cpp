@@ -77,12 +77,12 @@ class BodyWatch {
   }
   /// Is enough known about a stretch? Notes what it proves.
   bool settled(const MeshStretch& s, bool last) {
-    const double reach = s.reach(arm_), within = rule_ + o_.look_mm + reach;
+    const double reach = s.reach(arm_), best = worst ? worst->gap_mm : INFINITY;
+    const double look = rule_ + o_.look_mm + reach, within = std::min(look, std::max(best, 0.0) + reach);
     const MeshPlace place = gap(s, within);
     if (place.distance >= within && !inside(s)) return true;
     const bool hit = place.distance <= 0 || place.distance >= within;
     const double measured = place.distance >= within ? -INFINITY : place.distance, proven = measured - reach;
-    const double best = worst ? worst->gap_mm : INFINITY;
     if (!hit && proven >= best) return true;  // no nearer than what is known already
     if (!hit && !last && reach > o_.proof_mm && reach > 0.05 * (measured - rule_)) return false;
     if (!hit && inside(s)) return note(s, place, -INFINITY, -INFINITY), true;

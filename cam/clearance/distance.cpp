@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 
 namespace toothpath::clearance {
@@ -16,7 +17,11 @@ constexpr double kPlaceWindowReach = 1.6;  // mm: a longer window looks at too m
 /// Crossings of the ray p + t d, t > 0, with the triangles; -1: one of them is too close to an edge to tell.
 class RayParity {
  public:
-  RayParity(const TreeView& tree, const Vec3& p, const Vec3& d) : tree_(tree), p_(p), d_(d) {}
+  RayParity(const TreeView& tree, const Vec3& p, const Vec3& d)
+      : tree_(tree),
+        p_(p),
+        d_(d),
+        ray_{{p.x(), p.y(), p.z()}, {d.x(), d.y(), d.z()}, {1 / d.x(), 1 / d.y(), 1 / d.z()}} {}
   int count() {
     visit(0);
     return doubtful_ ? -1 : crossings_;
@@ -24,39 +29,18 @@ class RayParity {
 
  private:
   void visit(std::int32_t index) {
-    if (doubtful_) return;
     if (index < 0) return block(tree_.blocks[~index]);
     const MeshNode& node = tree_.nodes[index];
-    for (int lane = 0; lane < kLanes; ++lane) {
-      double from = 0, to = INFINITY;
-      for (int k = 0; k < 3; ++k) {
-        const double x = (node.low[k][lane] - kBoundPad - p_[k]) / d_[k],
-                     y = (node.high[k][lane] + kBoundPad - p_[k]) / d_[k];
-        from = std::max(from, std::min(x, y));
-        to = std::min(to, std::max(x, y));
-      }
-      if (from <= to * (1 + 1e-12) + kBoundPad && node.low[0][lane] < 1e149) visit(node.child[lane]);
-    }
+    for (unsigned lanes = kernels_.ray_to_boxes(node, ray_); lanes != 0 && !doubtful_; lanes &= lanes - 1)
+      visit(node.child[std::countr_zero(lanes)]);
   }
   void block(const TriangleBlock& b) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const TriangleCorners t = corners_of(b, lane);
-      if (lane > 0 && repeats(b, lane)) continue;
-      const Vec3 u = t.b - t.a, w = t.c - t.a, q = d_.cross(w), s = p_ - t.a;
-      const double det = u.dot(q), scale = u.norm() * w.norm();
-      if (std::abs(det) <= 1e-12 * scale) {  // seen edge-on: does the ray come near it at all?
-        if (near_line(t)) doubtful_ = true;
-        continue;
-      }
-      const double v = s.dot(q) / det, z = d_.dot(s.cross(u)) / det, far = w.dot(s.cross(u)) / det;
-      constexpr double edge = 1e-9;
-      if (v < -edge || z < -edge || v + z > 1 + edge || far < -edge) continue;
-      if (v < edge || z < edge || v + z > 1 - edge || std::abs(far) < edge) {
-        doubtful_ = true;
-        return;
-      }
-      ++crossings_;
-    }
+    const RayLanes lanes = kernels_.ray_to_triangles(b, ray_);
+    if (lanes.near_edge != 0) doubtful_ = true;
+    for (unsigned left = lanes.through; left != 0; left &= left - 1)
+      if (const int lane = std::countr_zero(left); lane == 0 || !repeats(b, lane)) ++crossings_;
+    for (unsigned left = lanes.edge_on; left != 0 && !doubtful_; left &= left - 1)  // does the ray come near it at all?
+      doubtful_ = near_line(corners_of(b, std::countr_zero(left)));
   }
   /// Empty lanes repeat the first triangle of the block.
   static bool repeats(const TriangleBlock& b, int lane) {
@@ -69,8 +53,10 @@ class RayParity {
     return segment_to_triangle(p_, d_, 1e6, t, foot) < 1e-12;
   }
 
+  const MeshKernels& kernels_ = mesh_kernels();
   TreeView tree_;
   Vec3 p_, d_;
+  RayView ray_;
   int crossings_ = 0;
   bool doubtful_ = false;
 };

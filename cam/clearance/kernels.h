@@ -72,6 +72,18 @@ struct CapsuleView {
   double height;  ///< of the flute above the centre
 };
 
+/// A ray from p along d.
+struct RayView {
+  double p[3], d[3], inverse[3];  ///< 1 / d
+};
+
+/// How a ray goes by the triangles of a block: a bit a lane.
+struct RayLanes {
+  unsigned through = 0;
+  unsigned near_edge = 0;  ///< too close to an edge, or to its own start, to tell
+  unsigned edge_on = 0;    ///< in the plane of the triangle, or the triangle has none
+};
+
 struct MeshKernels {
   const char* name;
   /// Nearest triangle below `limit2` (squared). `start`: a triangle to begin with, or block -1.
@@ -95,6 +107,9 @@ struct MeshKernels {
   /// Lower bounds of the distance between a frustum and the eight boxes of a node, or the eight triangles of a block.
   void (*frustum_to_boxes)(const MeshNode&, const FrustumView&, double* out);
   void (*frustum_to_triangles)(const TriangleBlock&, const FrustumView&, double* out);
+  /// Lanes of the boxes that a ray meets, one a bit.
+  unsigned (*ray_to_boxes)(const MeshNode&, const RayView&);
+  RayLanes (*ray_to_triangles)(const TriangleBlock&, const RayView&);
 };
 
 /// The fastest set that this processor can run.

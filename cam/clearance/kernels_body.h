@@ -435,5 +435,47 @@ void frustum_to_triangles(const TriangleBlock& b, const FrustumView& f, double* 
   }
 }
 
+INLINE unsigned bits(M a, M b) {
+  unsigned out = 0;
+  for (int k = 0; k < 4; ++k) out |= unsigned(a[k] & 1) << k | unsigned(b[k] & 1) << (k + 4);
+  return out;
+}
+
+INLINE M ray_meets(const MeshNode& node, const RayView& r, int half) {
+  constexpr double pad = 1e-9;  // mm: rounding
+  V from = all(0), to = all(kHuge);
+  for (int k = 0; k < 3; ++k) {
+    const V x = (at(node.low[k], half) - pad - r.p[k]) * r.inverse[k];
+    const V y = (at(node.high[k], half) + pad - r.p[k]) * r.inverse[k];
+    from = most(from, least(x, y));
+    to = least(to, most(x, y));
+  }
+  return (from <= to * (1 + 1e-12) + pad) & (at(node.low[0], half) < 1e149);
+}
+
+unsigned ray_to_boxes(const MeshNode& node, const RayView& r) {
+  return bits(ray_meets(node, r, 0), ray_meets(node, r, 1));
+}
+
+RayLanes ray_to_triangles(const TriangleBlock& b, const RayView& r) {
+  constexpr double edge = 1e-9;  // of the triangle
+  M through[2], near_edge[2], edge_on[2];
+  for (int half = 0; half < 2; ++half) {
+    const V ux = at(b.ab[0], half), uy = at(b.ab[1], half), uz = at(b.ab[2], half);
+    const V wx = at(b.ac[0], half), wy = at(b.ac[1], half), wz = at(b.ac[2], half);
+    const V sx = r.p[0] - at(b.a[0], half), sy = r.p[1] - at(b.a[1], half), sz = r.p[2] - at(b.a[2], half);
+    const V qx = r.d[1] * wz - r.d[2] * wy, qy = r.d[2] * wx - r.d[0] * wz, qz = r.d[0] * wy - r.d[1] * wx;
+    const V cx = sy * uz - sz * uy, cy = sz * ux - sx * uz, cz = sx * uy - sy * ux;
+    const V det = ux * qx + uy * qy + uz * qz;
+    edge_on[half] = det * det <= 1e-24 * at(b.g11, half) * at(b.g22, half);
+    const V v = (sx * qx + sy * qy + sz * qz) / det, z = (r.d[0] * cx + r.d[1] * cy + r.d[2] * cz) / det;
+    const V far = (wx * cx + wy * cy + wz * cz) / det;
+    const M met = (v >= -edge) & (z >= -edge) & (v + z <= 1 + edge) & (far >= -edge) & ~edge_on[half];
+    near_edge[half] = met & ((v < edge) | (z < edge) | (v + z > 1 - edge) | (size(far) < edge));
+    through[half] = met & ~near_edge[half];
+  }
+  return {bits(through[0], through[1]), bits(near_edge[0], near_edge[1]), bits(edge_on[0], edge_on[1])};
+}
+
 }  // namespace
 #undef INLINE

@@ -1,101 +1,115 @@
-// Line contact of a mill's side with a face gear flank: the leaned axis, the gap along it, and what curvature leaves of
-// it.
+// Line contact of a mill's side with a flank: the leaned axis, and how the distance to the flank bends along it.
 //
 // A tool of revolution is the union of balls of radius rho(t) about its axis c_0 + t a. It touches a flank along a
 // whole line exactly as well as the one function e(t) = d(c_0 + t a) - rho(t) is zero; d is the signed distance to the
-// (continued) flank, which a face gear has in closed form: parallel surfaces are rotations of the flank. d is linear
-// along the axis to second order if the axis leans along a direction of zero normal curvature of the parallel surface.
-// Gear frame, mm, rad. Derivation: docs/line_milling.md, sections 2 and 3.
+// (continued) flank. d is linear along the axis to second order if the axis leans along a direction of zero normal
+// curvature of the parallel surface. That surface bends by what the flank's own first derivatives tell (of place and
+// normal), so that any gear may be asked. mm, rad. Derivation: docs/line_milling.md, sections 2 and 3.
 //
-// Kernels are templated on the scalar: double, dual numbers and 50 digits run the same text.
+// Kernels are templated on the scalar: double and 50 digits run the same text.
 #pragma once
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "cam/tool/radius_law.h"
-#include "geometry/face_gear/flank_foot.h"
-#include "geometry/face_gear/inverse.h"
-#include "geometry/face_gear/surface.h"
+#include "geometry/base/vec.h"
 
 namespace toothpath::line {
 
-/// Parameters of a place on the flank or on one of its parallel surfaces.
-template <typename S>
-using Place = face_gear::FlankParameters<S>;
-using face_gear::flank_foot, face_gear::FlankFoot, face_gear::theta_at_distance;
-
-/// The tangent plane at a flank point: p up along the profile, o along the tooth outwards, n out of the material.
-/// Orthonormal.
+/// The tangent plane at a flank point: p up along the profile, o along the tooth towards rising s, n out of the
+/// material. Orthonormal.
 template <typename S>
 struct TangentFrame {
   Vec3T<S> p, o, n;
 };
 
-/// p is z without its part along n; o = s n x z / | | points outwards because (P x n)_z = s M2 on the whole flank, and
-/// the same keeps 1 - n_z^2 >= M2^2 / r^2: no flank is level, nothing is singular here.
+/// p is `up`, a unit vector in the meridian plane of the point, without its part along n. No flank is square to it.
 template <typename S>
-TangentFrame<S> tangent_frame(int side, const Vec3T<S>& n) {
+TangentFrame<S> tangent_frame(int side, const Vec3T<S>& n, const Vec3T<S>& up) {
   using std::sqrt;
-  const S flat = sqrt(S(n[0] * n[0] + n[1] * n[1]));
+  const Vec3T<S> across = n.cross(up);
+  const S size = sqrt(S(across.dot(across)));
   TangentFrame<S> f;
   f.n = n;
-  f.p = Vec3T<S>(-n[2] * n[0] / flat, -n[2] * n[1] / flat, flat);
-  f.o = Vec3T<S>(S(side) * n[1] / flat, S(-side) * n[0] / flat, S(0));
+  f.p = Vec3T<S>(across.cross(n) / size);
+  f.o = Vec3T<S>(across * S(S(side) / size));
   return f;
 }
 
-/// Both directions of zero normal curvature of a saddle, in its tangent basis (e, l), not normalised: the roots of
-/// H_ee x^2 + 2 H_el x y + H_ll y^2, written without a quotient, so that neither may be lost. `ok` is false where K >=
-/// 0.
+/// Shape operator of a surface in a tangent frame (p, o), convex positive.
 template <typename S>
-struct ZeroDirections {
-  Vec2T<S> first, second;
-  bool ok = false;
-};
-template <typename S>
-ZeroDirections<S> zero_directions(const typename face_gear::FaceGearSurface<S>::ShapeOperator& H) {
-  using std::sqrt;
-  const S k2 = H.el * H.el - H.ee * H.ll;
-  if (!(k2 > S(0))) return {};
-  const S root = sqrt(k2), q = H.el > S(0) ? S(-(H.el + root)) : S(root - H.el);
-  return {Vec2T<S>(H.ll, q), Vec2T<S>(q, H.ee), true};
-}
+struct TangentShape {
+  S pp{}, po{}, oo{};
 
-/// Lean psi of the wanted axis at the flank place (theta, B) for a contact whose axis lies `distance` above the flank:
-/// the direction of zero normal curvature of the parallel surface there, the steeper of the two (nearer to p). psi > 0
-/// leans outwards, on either flank.
-/// @param distance  rho of the tool where it touches [mm]; 0: the zero direction of the flank itself
-/// Nothing where J <= 0 at the flank or on the parallel surface: beyond the undercut edge.
-/// Error <= 1e-12 rad for J > 1e-3 m^2.
+  TangentShape() = default;
+  /// From the derivatives of place and normal by any two parameters.
+  TangentShape(const TangentFrame<S>& f, const Vec3T<S>& pu, const Vec3T<S>& pv, const Vec3T<S>& nu,
+               const Vec3T<S>& nv) {
+    const S a = pu.dot(f.p), b = pv.dot(f.p), c = pu.dot(f.o), d = pv.dot(f.o), area = a * d - b * c;
+    const S up = nu.dot(f.p), vp = nv.dot(f.p), uo = nu.dot(f.o), vo = nv.dot(f.o);
+    pp = (up * d - vp * c) / area;
+    po = (vp * a - up * b + uo * d - vo * c) / (S(2) * area);
+    oo = (vo * a - uo * b) / area;
+  }
+  [[nodiscard]] S trace() const { return pp + oo; }
+  [[nodiscard]] S gauss() const { return pp * oo - po * po; }
+  /// By how much areas grow from the surface to its parallel surface at `distance`.
+  [[nodiscard]] S growth(const S& distance) const { return S(1) + distance * (trace() + distance * gauss()); }
+  /// The parallel surface's H (1 + d H)^-1, times `growth`: H + d K by Cayley and Hamilton. No quotient.
+  [[nodiscard]] TangentShape grown(const S& distance) const {
+    TangentShape out = *this;
+    out.pp += distance * gauss();
+    out.oo += distance * gauss();
+    return out;
+  }
+  /// Along a direction (x, y) in (p, o).
+  [[nodiscard]] S along(const S& x, const S& y) const { return pp * x * x + S(2) * po * x * y + oo * y * y; }
+};
+
+/// Lean psi of the wanted axis for a contact whose axis lies `distance` above a place of the flank with shape H: the
+/// direction of zero normal curvature of the parallel surface there, the steeper of the two (nearer to p); where it has
+/// none (K >= 0, an involute among them), that of the least. psi > 0 leans towards rising s, on either flank.
+/// @param distance  rho of the tool where it touches, and its allowance [mm]; 0: the direction of the flank itself
+/// Nothing where a ball of that radius does not fit the hollow of the flank.
+/// Error <= 1e-12 rad for a flank that is no nearer to its undercut edge than J = 1e-3 m^2.
 template <typename S>
-std::optional<S> lean(const face_gear::FaceGearSurface<S>& f, int side, const Place<S>& at, const S& distance) {
-  using std::atan2, std::sqrt;
-  const S theta = theta_at_distance(f, at.theta, distance);
-  const typename face_gear::FaceGearSurface<S>::FlankPlace parallel(f, side, theta, at.B), on(f, side, at.theta, at.B);
-  const auto bend = parallel.curvature();
-  if (!(bend.J > S(0)) || !(on.curvature().J > S(0))) return {};
-  const auto roots = zero_directions<S>(parallel.shape(bend));
-  if (!roots.ok) return {};
-  const auto turn = on.turn();
-  const auto basis = on.basis(turn);
-  const auto frame = tangent_frame<S>(side, on.point(turn).n);
+std::optional<S> lean(const TangentShape<S>& H, const S& distance) {
+  using std::abs, std::atan2, std::sqrt;
+  if (!(H.growth(distance) > S(0)) || !(S(2) + distance * H.trace() > S(0))) return {};
+  const TangentShape<S> A = H.grown(distance);
   std::optional<S> best;
   S steepest(-1);
-  for (const auto& root : {roots.first, roots.second}) {
-    Vec3T<S> u = basis.e * root[0] + basis.l * root[1];
-    u = Vec3T<S>(u / S(sqrt(S(u.dot(u)))));
-    S up = u.dot(frame.p), out = u.dot(frame.o);
+  const auto take = [&](S up, S out) {
     if (up < S(0)) {
       up = -up;
       out = -out;
     }
-    if (!(up > steepest)) continue;
-    steepest = up;
+    const S size = sqrt(S(up * up + out * out));
+    if (!(up > steepest * size)) return;
+    steepest = up / size;
     best = atan2(out, up);
+  };
+  if (const S k2 = -A.gauss(); k2 > S(0)) {
+    // Both roots of A.along(x, y), written without a quotient, so that neither may be lost.
+    const S root = sqrt(k2), q = A.po > S(0) ? S(-(A.po + root)) : S(root - A.po);
+    take(A.oo, q);
+    take(q, A.pp);
+    return best;
   }
+  const S half = (A.pp - A.oo) / S(2), root = sqrt(S(half * half + A.po * A.po)), sense(A.trace() < S(0) ? -1 : 1);
+  if (!(root > S(0))) return S(0);  // all directions bend alike
+  // Least in size is trace / 2 - sense root; its direction by the row that loses no digits.
+  const S across = half * sense;
+  if (across > S(0)) take(S(-A.po), S(sense * (across + root)));
+  else take(S(sense * (across - root)), A.po);
   return best;
+}
+
+/// d'' along the unit direction a at a place over a flank point with this frame and shape: a^T (Hess d) a.
+template <typename S>
+S distance_bend(const TangentFrame<S>& f, const TangentShape<S>& H, const S& distance, const Vec3T<S>& a) {
+  return H.grown(distance).along(a.dot(f.p), a.dot(f.o)) / H.growth(distance);
 }
 
 /// A straight tool axis: the ball of radius rho(t) is centred on c_0 + t a; c_0 is the centre of the ball end. mm, a
@@ -130,29 +144,6 @@ AxisLine<S> axis_of(const Vec3T<S>& P, const TangentFrame<S>& frame, const tool:
   using std::asin;
   const Vec3T<S> a = axis_direction<S>(frame, pose.psi, S(asin(law.slope(pose.t_m)) + pose.eps));
   return {Vec3T<S>(P + frame.n * S(law.rho(pose.t_m) + pose.delta) - a * pose.t_m), a};
-}
-
-/// d'' along the unit direction a at a place with this foot: a^T (Hess d) a, the shape operator of the parallel
-/// surface.
-template <typename S>
-S distance_bend(const face_gear::FaceGearSurface<S>& f, int side, const FlankFoot<S>& foot, const Vec3T<S>& a) {
-  const typename face_gear::FaceGearSurface<S>::FlankPlace at(f, side, foot.at.theta, foot.at.B);
-  const auto H = at.shape(at.curvature());
-  const auto basis = at.basis(at.turn());
-  const TurnT<S> turn(foot.turn);
-  const S e = a.dot(turn(basis.e)), l = a.dot(turn(basis.l));
-  return H.ee * e * e + S(2) * H.el * e * l + H.ll * l * l;
-}
-
-/// d''' along the axis at height t, from dual numbers through `flank_foot` and `distance_bend`. 1/mm^2.
-/// @param start  parameters near the foot of that place
-[[nodiscard]] std::optional<double> distance_third(const face_gear::FaceGearSurface<double>& f, int side,
-                                                   const AxisLine<double>& axis, double t, const Place<double>& start);
-
-/// What the best pose leaves of a gap with this third derivative over a line of half length h along the axis: |D3| h^3
-/// / 12, the Chebyshev polynomial T_3 stood on zero. mm
-[[nodiscard]] inline double left_estimate(double third, double half_length) {
-  return std::abs(third) * half_length * half_length * half_length / 12;
 }
 
 }  // namespace toothpath::line

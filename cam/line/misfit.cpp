@@ -12,11 +12,8 @@ constexpr int kHeights = 64, kBlockHeights = 16;
 constexpr int kBlockPlaces = 8;  // pieces of a block
 
 /// Over the feet that lie in the strip and in the ring.
-double largest_at(const LineFit& fit, const AxisLine<double>& axis, const Vec3& anchor, int heights) {
-  const FlankTask& flank = fit.flank();
-  const auto start = face_gear::invert_flank(flank.surface, flank.side, anchor.head<2>().norm(), anchor.z());
-  if (!start) return 0;
-  const auto gap = fit.gap_along(axis, (anchor - axis.c_0).dot(axis.a), {start->theta, start->B});
+double largest_at(const LineFit& fit, const AxisLine<double>& axis, const Vec3& anchor, const Place& at, int heights) {
+  const auto gap = fit.gap_along(axis, (anchor - axis.c_0).dot(axis.a), at);
   if (!gap || !gap->in_ring()) return 0;
   double most = 0;
   for (int k = 0; k <= heights; ++k) {
@@ -27,7 +24,7 @@ double largest_at(const LineFit& fit, const AxisLine<double>& axis, const Vec3& 
     const auto node = fit.gap_at(axis, t, near.at);
     if (!node) continue;
     const Strip& strip = fit.strip();
-    if (node->z_foot > strip.top || (strip.bottom && node->z_foot < *strip.bottom)) continue;
+    if (node->depth < strip.top || (strip.bottom && node->depth > *strip.bottom)) continue;
     most = std::max(most, node->e);
   }
   return most;
@@ -39,7 +36,7 @@ double largest_between(const LineFit& fit, const LineRecord& a, const LineRecord
   AxisLine<double> axis;
   axis.a = ((1 - w) * a.axis.a + w * b.axis.a).normalized();
   axis.c_0 = (1 - w) * (a.axis.c_0 - r_0 * a.axis.a) + w * (b.axis.c_0 - r_0 * b.axis.a) + r_0 * axis.a;
-  return largest_at(fit, axis, (1 - w) * a.anchor + w * b.anchor, kBlockHeights);
+  return largest_at(fit, axis, (1 - w) * a.anchor + w * b.anchor, between(a.at, b.at, w), kBlockHeights);
 }
 
 }  // namespace
@@ -48,7 +45,7 @@ double largest_gap(const LineFit& fit, const LinePass& pass) {
   std::vector<double> most(pass.records.size(), 0.0);
   tbb::parallel_for(std::size_t{0}, most.size(), [&](std::size_t k) {
     const LineRecord& here = pass.records[k];
-    most[k] = largest_at(fit, here.axis, here.anchor, kHeights);
+    most[k] = largest_at(fit, here.axis, here.anchor, here.at, kHeights);
     for (int piece = 1; piece < kBlockPlaces && k > 0; ++piece)
       most[k] = std::max(most[k], largest_between(fit, pass.records[k - 1], here, double(piece) / kBlockPlaces));
   });

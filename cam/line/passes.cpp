@@ -56,8 +56,8 @@ class PassPlanner {
       : fit_(fit), o_(o), law_end_(law_end), m_(fit.flank().module_mm) {
     const auto& f = fit.flank();
     step_ = o.station * m_;
-    const double middle = 0.5 * (f.inner_radius + f.outer_radius);
-    const int half = int(std::ceil((0.5 * (f.outer_radius - f.inner_radius) + kBeyond * m_) / step_));
+    const double middle = 0.5 * (f.s_from + f.s_to);
+    const int half = int(std::ceil((0.5 * (f.s_to - f.s_from) + kBeyond * m_) / step_));
     start_ = middle - half * step_;
     count_ = std::size_t(2 * half + 1);
     lift_.assign(count_, 0.0);
@@ -82,7 +82,7 @@ class PassPlanner {
   }
 
  private:
-  [[nodiscard]] double radius(std::size_t k) const { return start_ + double(k) * step_; }
+  [[nodiscard]] double station(std::size_t k) const { return start_ + double(k) * step_; }
   [[nodiscard]] std::size_t middle() const { return count_ / 2; }
 
   [[nodiscard]] Stations best_of_all() const {
@@ -90,7 +90,7 @@ class PassPlanner {
     out.poses.resize(count_);
     WorkShare share(double(count_), kStationsWorth);
     tbb::parallel_for(std::size_t{0}, count_, [&](std::size_t k) {
-      out.poses[k] = fit_.best(radius(k), condition_);
+      out.poses[k] = fit_.best(station(k), condition_);
       share.add();
     });
     const auto full = [&](std::size_t k) { return out.poses[k] && out.poses[k]->covered >= kFull; };
@@ -112,21 +112,30 @@ class PassPlanner {
     const auto& f = fit_.flank();
     if (!best_.enough)
       return fail(
-          "zone {}: flank {:+d} has no four stations {:.3f} mm apart about radius {:.3f} mm with a line over its whole "
-          "height",
-          f.zone, f.side, step_, radius(middle()));
+          "zone {}: flank {:+d} has no four stations {:.3f} mm apart about {} with a line over its whole height",
+          f.zone, f.side, step_, told(station(middle())));
     for (std::size_t k = best_.first; k <= best_.last; ++k)
-      if (auto s = not_too_tilted(*best_.poses[k], radius(k)); !s) return s.error();
+      if (auto s = not_too_tilted(*best_.poses[k]); !s) return s.error();
     if (auto s = reached(highest()); !s) return s.error();
     pass_.best_mm = worst_best();
     return Ok{};
   }
-  [[nodiscard]] Status not_too_tilted(const StationPose& p, double r) const {
-    if (p.tilt() <= kMostTilt) return Ok{};
+  /// A place along the ring in words: "radius 62.500 mm".
+  [[nodiscard]] std::string told(double s, int digits = 3) const {
+    const auto& outline = fit_.flank().space->outline();
+    return fmt::format("{} {:.{}f} mm", outline.along, outline.sign * s, digits);
+  }
+  [[nodiscard]] const char* end_name(int sense) const {
+    const auto& outline = fit_.flank().space->outline();
+    return sense > 0 ? outline.to : outline.from;
+  }
+  [[nodiscard]] Status not_too_tilted(const StationPose& p) const {
+    if (p.from_upright() <= kMostTilt) return Ok{};
     return fail(
-        "zone {}: flank {:+d} at radius {:.3f} mm asks for a tool tilted by {:.2f} deg from the gear axis; at most "
-        "{:.0f} deg are planned: a ring that begins farther from the undercut limit, or a smaller helix angle",
-        fit_.flank().zone, fit_.flank().side, r, degrees(p.tilt()), degrees(kMostTilt));
+        "zone {}: flank {:+d} at {} asks for a tool tilted by {:.2f} deg from {}; at most {:.0f} deg are planned: a "
+        "ring that begins farther from the undercut limit, or a smaller helix angle",
+        fit_.flank().zone, fit_.flank().side, told(p.s), degrees(p.from_upright()),
+        fit_.flank().chart().sine == 0 ? "the gear axis" : "the height of the teeth", degrees(kMostTilt));
   }
   /// The full station that touches highest on the tool.
   [[nodiscard]] const StationPose& highest() const {
@@ -147,13 +156,13 @@ class PassPlanner {
     const auto& error = fit_.law().error;
     if (error && !(law_end_ < error->t.back()))
       return fail(
-          "zone {}: flank {:+d} at radius {:.3f} mm is touched up to t = {:.3f} mm above the centre of the ball end, "
-          "the measured meridian ends at t = {:.3f} mm: it must be measured up to there",
-          f.zone, f.side, p.r, p.gap.t_to, law_end_);
+          "zone {}: flank {:+d} at {} is touched up to t = {:.3f} mm above the centre of the ball end, the measured "
+          "meridian ends at t = {:.3f} mm: it must be measured up to there",
+          f.zone, f.side, told(p.s), p.gap.t_to, law_end_);
     return fail(
-        "zone {}: flank {:+d} at radius {:.3f} mm is touched up to {:.3f} mm above the tip, the teeth end at {:.3f} "
-        "mm: flute_length must be {:.3f} mm at least",
-        f.zone, f.side, p.r, touches(p.gap.t_to), touches(law_end_), std::ceil(1e3 * touches(p.gap.t_to)) / 1e3);
+        "zone {}: flank {:+d} at {} is touched up to {:.3f} mm above the tip, the teeth end at {:.3f} mm: flute_length "
+        "must be {:.3f} mm at least",
+        f.zone, f.side, told(p.s), touches(p.gap.t_to), touches(law_end_), std::ceil(1e3 * touches(p.gap.t_to)) / 1e3);
   }
   /// Worst misfit of the poses alone, over the full stations.
   [[nodiscard]] double worst_best() const {
@@ -178,7 +187,7 @@ class PassPlanner {
       std::vector<double> misfit(angle.size(), 0);
       tbb::parallel_for(std::size_t{0}, misfit.size(), [&](std::size_t k) {
         if (k % 3 != 0 && k + 1 != misfit.size()) return;
-        const auto pose = fit_.best(radius(best_.first + k), condition(x));
+        const auto pose = fit_.best(station(best_.first + k), condition(x));
         misfit[k] = pose && pose->gap.in_ring() ? pose->gap.misfit() : INFINITY;
       });
       return *std::max_element(misfit.begin(), misfit.end());
@@ -198,11 +207,11 @@ class PassPlanner {
     return condition(0.5 * (a + b));
   }
 
-  /// How psi(r) and eps(r) are made from the best poses.
+  /// How psi(s) and eps(s) are made from the best poses.
   struct Choice {
     double stiffness = 0;
     std::array<double, 2> slopes = {kEndSlopes[0],
-                                    kEndSlopes[0]};  ///< beyond the full stations at the inner, the outer end
+                                    kEndSlopes[0]};  ///< beyond the full stations where s begins, where it ends
     std::array<double, 2> bends = {0,
                                    0};  ///< or: bent there towards the best, by so much a station (rad); 0: straight on
     double worst = INFINITY;            ///< misfit
@@ -228,7 +237,7 @@ class PassPlanner {
     for (std::ptrdiff_t k = std::ptrdiff_t(full) + sense; k >= 0 && k < std::ptrdiff_t(count_); k += sense) {
       const auto at = std::size_t(k), one = std::size_t(k - sense), two = std::size_t(k - 2 * sense);
       const Neighbourhood about{2 * psi[one] - psi[two], 2 * eps[one] - eps[two], most, kEpsBend * most};
-      const auto p = fit_.best(radius(at), condition_, about);
+      const auto p = fit_.best(station(at), condition_, about);
       const bool counts = p && p->gap.in_ring() && p->covered > kLeastCovered;
       psi[at] = counts ? p->angles.psi : about.psi;
       eps[at] = counts ? p->angles.eps : about.eps;
@@ -248,18 +257,18 @@ class PassPlanner {
     return c;
   }
 
-  [[nodiscard]] std::optional<StationPose> pose(double r) const { return pose(r, o_.bias_mm); }
-  [[nodiscard]] std::optional<StationPose> pose(double r, std::optional<double> bias) const {
-    const double psi = psi_.at(r), delta = r < radius(middle()) ? delta_inner_ : delta_outer_;
+  [[nodiscard]] std::optional<StationPose> pose(double s) const { return pose(s, o_.bias_mm); }
+  [[nodiscard]] std::optional<StationPose> pose(double s, std::optional<double> bias) const {
+    const double psi = psi_.at(s), delta = s < station(middle()) ? delta_from_ : delta_to_;
     double eps = 0;
     if (condition_) {
-      const auto under = fit_.eps_under(r, psi, best_.poses[middle()]->angles.t_m, *condition_);
+      const auto under = fit_.eps_under(s, psi, best_.poses[middle()]->angles.t_m, *condition_);
       if (!under) return {};
       eps = *under;
     } else {
-      eps = eps_.at(r);
+      eps = eps_.at(s);
     }
-    return fit_.place(r, psi, eps, delta, lift_at(r), bias);
+    return fit_.place(s, psi, eps, delta, lift_at(s), bias);
   }
 
   /// Largest misfit over the stations from .. to that have a foot in the ring; infinite where a full one has no pose.
@@ -267,18 +276,18 @@ class PassPlanner {
   [[nodiscard]] double worst_misfit(std::size_t from, std::size_t to) const {
     std::vector<double> misfit(to + 1 - from, 0);
     tbb::parallel_for(from, to + 1, [&](std::size_t k) {
-      const auto p = pose(radius(k), {});
+      const auto p = pose(station(k), {});
       if (p && p->gap.in_ring()) misfit[k - from] = p->gap.misfit();
       if (!p && inside_full(k)) misfit[k - from] = INFINITY;
     });
     return *std::max_element(misfit.begin(), misfit.end());
   }
 
-  /// psi(r) and eps(r): the stiffest whose worst misfit over the full stations is hardly above the least. Then each end
+  /// psi(s) and eps(s): the stiffest whose worst misfit over the full stations is hardly above the least. Then each end
   /// goes on in the way that is best for it.
   Status smooth() {
-    delta_inner_ = best_.poses[best_.first]->angles.delta;
-    delta_outer_ = best_.poses[best_.last]->angles.delta;
+    delta_from_ = best_.poses[best_.first]->angles.delta;
+    delta_to_ = best_.poses[best_.last]->angles.delta;
     std::vector<Choice> choices;
     for (const double stiffness : kStiffness) {
       Choice c;
@@ -308,12 +317,12 @@ class PassPlanner {
   /// From the middle outwards until no foot is near the ring any more.
   Status extent() {
     placed_.assign(count_, {});
-    tbb::parallel_for(std::size_t{0}, count_, [&](std::size_t k) { placed_[k] = pose(radius(k)); });
-    if (auto s = extent(-1, delta_inner_, from_, r_from_); !s) return s;
-    return extent(1, delta_outer_, to_, r_to_);
+    tbb::parallel_for(std::size_t{0}, count_, [&](std::size_t k) { placed_[k] = pose(station(k)); });
+    if (auto s = extent(-1, delta_from_, from_, s_from_); !s) return s;
+    return extent(1, delta_to_, to_, s_to_);
   }
   /// @param end  last station that the pass reaches
-  Status extent(int sense, double& delta, std::size_t& end, double& r_end) {
+  Status extent(int sense, double& delta, std::size_t& end, double& s_end) {
     for (std::size_t k = middle();; k = std::size_t(std::ptrdiff_t(k) + sense)) {
       const auto& p = placed_[k];
       if (!p && (k == 0 || k + 1 == count_)) {
@@ -321,16 +330,15 @@ class PassPlanner {
         return Ok{};
       }
       if (!p)
-        return fail(
-            "zone {}: flank {:+d} ends for the anchors at radius {:.3f} mm, before its corner at the {} end is reached",
-            fit_.flank().zone, fit_.flank().side, radius(k), sense > 0 ? "outer" : "inner");
+        return fail("zone {}: flank {:+d} ends for the anchors at {}, before its corner at the {} end is reached",
+                    fit_.flank().zone, fit_.flank().side, told(station(k)), end_name(sense));
       if (p->gap.in_ring()) delta = p->angles.delta;
       end = k;
-      r_end = radius(k);
+      s_end = station(k);
       if (p->gap.beyond_ring >= o_.overrun * m_) return Ok{};
       if (k == 0 || k + 1 == count_)
         return fail("zone {}: flank {:+d}: a foot is still within the ring {:.3f} mm beyond its {} end",
-                    fit_.flank().zone, fit_.flank().side, kBeyond * m_, sense > 0 ? "outer" : "inner");
+                    fit_.flank().zone, fit_.flank().side, kBeyond * m_, end_name(sense));
     }
   }
   /// The full stations must have their room; beyond them the pass ends where its lifted tool has none.
@@ -338,44 +346,42 @@ class PassPlanner {
     if (!o_.room) return Ok{};
     std::vector<std::optional<Blocked>> blocked(best_.last + 1 - best_.first);
     tbb::parallel_for(std::size_t{0}, blocked.size(), [&](std::size_t k) {
-      if (const auto p = pose(radius(best_.first + k))) blocked[k] = o_.room(p->axis);
+      if (const auto p = pose(station(best_.first + k))) blocked[k] = o_.room(p->axis);
     });
     for (std::size_t k = 0; k < blocked.size(); ++k)
       if (const auto& b = blocked[k])
-        return fail(
-            "zone {}: flank {:+d} at radius {:.3f} mm: the {} has a gap of {:.4f} mm to the {}, {:.4f} mm is the "
-            "least{}",
-            fit_.flank().zone, fit_.flank().side, radius(best_.first + k), b->body, b->gap_mm, b->patch, b->least_mm,
-            remedy(b->need));
-    room(-1, best_.first, from_, r_from_);
-    room(1, best_.last, to_, r_to_);
+        return fail("zone {}: flank {:+d} at {}: the {} has a gap of {:.4f} mm to the {}, {:.4f} mm is the least{}",
+                    fit_.flank().zone, fit_.flank().side, told(station(best_.first + k)), b->body, b->gap_mm, b->patch,
+                    b->least_mm, remedy(b->need));
+    room(-1, best_.first, from_, s_from_);
+    room(1, best_.last, to_, s_to_);
     return Ok{};
   }
-  /// @param sense  +1: outwards
-  void room(int sense, std::size_t full, std::size_t& end, double& r_end) {
+  /// @param sense  +1: towards rising s
+  void room(int sense, std::size_t full, std::size_t& end, double& s_end) {
     for (std::size_t k = full; k != end;) {
       const std::size_t next = std::size_t(std::ptrdiff_t(k) + sense);
-      if (!clear(radius(next))) {
+      if (!clear(station(next))) {
         const std::size_t asked = end;
         end = k;
-        r_end = last_clear(radius(k), radius(next));
-        const auto last = pose(r_end);
-        if (!last || last->gap.in_ring()) pass_.shortened_mm += std::abs(radius(asked) - r_end);
-        if (const auto p = pose(radius(next))) pass_.shortened_by = o_.room(p->axis);
+        s_end = last_clear(station(k), station(next));
+        const auto last = pose(s_end);
+        if (!last || last->gap.in_ring()) pass_.shortened_mm += std::abs(station(asked) - s_end);
+        if (const auto p = pose(station(next))) pass_.shortened_by = o_.room(p->axis);
         return;
       }
       k = next;
     }
   }
-  [[nodiscard]] bool clear(double r) const {
-    const auto p = pose(r);
+  [[nodiscard]] bool clear(double s) const {
+    const auto p = pose(s);
     return p && !o_.room(p->axis);
   }
-  /// Last radius on the way from a clear pose to one that is not, to a 32nd of a station.
+  /// Last station on the way from a clear pose to one that is not, to a 32nd of a station.
   [[nodiscard]] double last_clear(double in, double out) const {
     for (int k = 0; k < 5; ++k) {
-      const double r = 0.5 * (in + out);
-      (clear(r) ? in : out) = r;
+      const double s = 0.5 * (in + out);
+      (clear(s) ? in : out) = s;
     }
     return in;
   }
@@ -385,23 +391,23 @@ class PassPlanner {
   /// middle (so that the lift begins when the corner is passed for certain), and no faster than the slope allows.
   void lifts() {
     const auto& f = fit_.flank();
-    const auto raise = [&](int sense, double r_most) {
+    const auto raise = [&](int sense, double s_most) {
       double had = 0, asked = 0;
       for (std::ptrdiff_t k = std::ptrdiff_t(middle()) + sense; k >= 0 && k < std::ptrdiff_t(count_); k += sense) {
         const auto &p = placed_[std::size_t(k)], &before = placed_[std::size_t(k - sense)];
         if (p && before) {
           had = std::min(asked, had + o_.lift_slope * (p->anchor - before->anchor).norm());
-          asked = fit_.lift_to(*p, r_most, sense);
+          asked = fit_.lift_to(*p, s_most, sense);
         }
         lift_[std::size_t(k)] = had;
       }
     };
-    if (o_.lift_inner) raise(-1, f.inner_radius - o_.lift_margin * m_);
-    if (o_.lift_outer) raise(1, f.outer_radius + o_.lift_margin * m_);
+    if (o_.lift_from) raise(-1, f.s_from - o_.lift_margin * m_);
+    if (o_.lift_to) raise(1, f.s_to + o_.lift_margin * m_);
   }
   /// Straight between stations: it never overshoots.
-  [[nodiscard]] double lift_at(double r) const {
-    const double u = std::clamp((r - start_) / step_, 0.0, double(count_ - 1));
+  [[nodiscard]] double lift_at(double s) const {
+    const double u = std::clamp((s - start_) / step_, 0.0, double(count_ - 1));
     const std::size_t k = std::min(std::size_t(u), count_ - 2);
     return o_.base_lift + lift_[k] + (u - double(k)) * (lift_[k + 1] - lift_[k]);
   }
@@ -409,26 +415,27 @@ class PassPlanner {
   /// Where exactly the first and the last foot of the pass lie in the ring. There the gap is held by the corner alone;
   /// beyond it delta stays.
   Status corners() {
-    const auto in_ring = [&](double r) {
-      const auto p = pose(r);
+    const auto in_ring = [&](double s) {
+      const auto p = pose(s);
       return p && p->gap.in_ring();
     };
     const auto find = [&](double in, double out, double& delta) {
       for (int k = 0; k < 60 && std::abs(out - in) > kCorner; ++k) {
-        const double r = 0.5 * (in + out);
-        (in_ring(r) ? in : out) = r;
+        const double s = 0.5 * (in + out);
+        (in_ring(s) ? in : out) = s;
       }
       if (const auto p = pose(in)) delta = p->angles.delta;
       return in;
     };
     std::size_t inner = from_, outer = to_;
-    while (inner < to_ && !in_ring(radius(inner))) ++inner;
-    while (outer > from_ && !in_ring(radius(outer))) --outer;
-    if (inner >= outer) return lost(radius(inner));
-    const double before = inner > from_ ? radius(inner - 1) : r_from_, after = outer < to_ ? radius(outer + 1) : r_to_;
-    if (before < radius(inner) && !in_ring(before)) stops_.push_back(find(radius(inner), before, delta_inner_));
-    if (after > radius(outer) && !in_ring(after)) stops_.push_back(find(radius(outer), after, delta_outer_));
-    if (stops_.empty() || r_to_ > stops_.back()) stops_.push_back(r_to_);
+    while (inner < to_ && !in_ring(station(inner))) ++inner;
+    while (outer > from_ && !in_ring(station(outer))) --outer;
+    if (inner >= outer) return lost(station(inner));
+    const double before = inner > from_ ? station(inner - 1) : s_from_,
+                 after = outer < to_ ? station(outer + 1) : s_to_;
+    if (before < station(inner) && !in_ring(before)) stops_.push_back(find(station(inner), before, delta_from_));
+    if (after > station(outer) && !in_ring(after)) stops_.push_back(find(station(outer), after, delta_to_));
+    if (stops_.empty() || s_to_ > stops_.back()) stops_.push_back(s_to_);
     return Ok{};
   }
 
@@ -440,7 +447,7 @@ class PassPlanner {
     blend.a = ((1 - w) * a.axis.a + w * b.axis.a).normalized();
     blend.c_0 = tip + r_0 * blend.a;
     const double t = std::max(0.0, (1 - w) * a.angles.t_m + w * b.angles.t_m);
-    const auto gap = fit_.gap_along(blend, t, {(1 - w) * a.at.theta + w * b.at.theta, (1 - w) * a.at.B + w * b.at.B});
+    const auto gap = fit_.gap_along(blend, t, between(a.at, b.at, w));
     if (!gap) return INFINITY;
     if (!gap->in_ring()) return 0;
     const double most = std::max({a.gap.most, b.gap.most, o_.bias_mm});
@@ -448,17 +455,17 @@ class PassPlanner {
   }
 
   Status records() {
-    auto here = pose(r_from_);
+    auto here = pose(s_from_);
     const double longest = o_.longest * m_;
     double step = longest;
-    if (!here) return lost(r_from_);
+    if (!here) return lost(s_from_);
     if (auto s = add(*here); !s) return s;
     for (std::size_t stop = 0; stop < stops_.size();) {
       const double end = stops_[stop];
-      const double pieces = std::ceil((end - here->r) / step - 1e-9);  // even ones up to the stop
-      const double r = pieces <= 1 ? end : here->r + (end - here->r) / pieces;
-      const auto next = pose(r);
-      if (!next) return lost(r);
+      const double pieces = std::ceil((end - here->s) / step - 1e-9);  // even ones up to the stop
+      const double s = pieces <= 1 ? end : here->s + (end - here->s) / pieces;
+      const auto next = pose(s);
+      if (!next) return lost(s);
       const double worst = std::max({stray(*here, *next, 0.25), stray(*here, *next, 0.5), stray(*here, *next, 0.75)});
       if (worst > o_.chord_mm && step > kShortest * m_) {
         step *= 0.5;
@@ -466,25 +473,25 @@ class PassPlanner {
       }
       if (worst > o_.chord_mm)
         return fail(
-            "zone {}: flank {:+d} at radius {:.4f} mm: blocks of {:.4f} mm still stray by {:.3f} um, more than the "
-            "chord tolerance {:.3f} um",
-            fit_.flank().zone, fit_.flank().side, r, step, 1e3 * worst, 1e3 * o_.chord_mm);
+            "zone {}: flank {:+d} at {}: blocks of {:.4f} mm still stray by {:.3f} um, more than the chord tolerance "
+            "{:.3f} um",
+            fit_.flank().zone, fit_.flank().side, told(s, 4), step, 1e3 * worst, 1e3 * o_.chord_mm);
       pass_.chord_mm = std::max(pass_.chord_mm, worst);
       here = next;
-      if (auto s = add(*here); !s) return s;
-      if (r == end) ++stop;
+      if (auto added = add(*here); !added) return added;
+      if (s == end) ++stop;
       step = std::min(longest, 2 * step);
     }
     return Ok{};
   }
-  [[nodiscard]] Diagnostic lost(double r) const {
-    return fail("zone {}: flank {:+d}: no pose at radius {:.4f} mm", fit_.flank().zone, fit_.flank().side, r);
+  [[nodiscard]] Diagnostic lost(double s) const {
+    return fail("zone {}: flank {:+d}: no pose at {}", fit_.flank().zone, fit_.flank().side, told(s, 4));
   }
   Status add(const StationPose& p) {
     if (auto s = reached(p); !s) return s;
-    if (auto s = not_too_tilted(p, p.r); !s) return s;
+    if (auto s = not_too_tilted(p); !s) return s;
     if (p.gap.in_ring()) pass_.misfit_mm = std::max(pass_.misfit_mm, p.gap.misfit());
-    LineRecord record{p.r, p.axis, p.anchor, p.gap.most, p.lift, 1};
+    LineRecord record{p.s, p.axis, p.anchor, p.at, p.gap.most, p.lift, 1};
     const double r_0 = fit_.law().r_0;
     if (!pass_.records.empty()) {
       const auto& before = pass_.records.back();
@@ -499,10 +506,10 @@ class PassPlanner {
 
   void figures() {
     for (std::size_t k = from_; k <= to_; ++k) {
-      const auto p = pose(radius(k));
+      const auto p = pose(station(k));
       if (!p || !p->gap.in_ring()) continue;
-      pass_.stations.push_back({p->r, p->angles.psi, p->angles.eps, p->tilt(), p->covered,
-                                best_.poses[k] ? best_.poses[k]->gap.misfit() : 0, p->gap.misfit()});
+      pass_.stations.push_back({fit_.flank().space->outline().sign * p->s, p->angles.psi, p->angles.eps, p->tilt(),
+                                p->covered, best_.poses[k] ? best_.poses[k]->gap.misfit() : 0, p->gap.misfit()});
       pass_.misfit_mm = std::max(pass_.misfit_mm, p->gap.misfit());
       pass_.contact_top_mm = std::max(pass_.contact_top_mm, fit_.law().r_0 + p->gap.ring_to);
     }
@@ -512,14 +519,14 @@ class PassPlanner {
   const PassOptions& o_;
   double law_end_, m_, step_ = 0, start_ = 0;
   std::size_t count_ = 0, from_ = 0, to_ = 0;
-  double r_from_ = 0, r_to_ = 0;  ///< where the pass begins and ends
+  double s_from_ = 0, s_to_ = 0;  ///< where the pass begins and ends
   Stations best_;
   std::vector<std::optional<StationPose>> placed_;
   std::optional<AxisCondition> condition_;
   StationCurve psi_, eps_;
   std::vector<double> lift_;
-  double delta_inner_ = 0, delta_outer_ = 0;
-  std::vector<double> stops_;  ///< radii that have a record: the ring's ends as the pass meets them, and the last
+  double delta_from_ = 0, delta_to_ = 0;
+  std::vector<double> stops_;  ///< stations that have a record: the ring's ends as the pass meets them, and the last
   LinePass pass_;
 };
 

@@ -1,8 +1,7 @@
 // One pass of a mill's side along one strip of a flank: stations, smoothed angles, ends, and records as sparse as the
 // chord allows.
 //
-// Gear frame, tooth 0, mm, rad. The pass runs from the inner to the outer end. Derivation: docs/line_milling.md,
-// sections 5 and 6.
+// Gear frame, space 0, mm, rad. The pass runs towards rising s. Derivation: docs/line_milling.md, sections 5 and 6.
 #pragma once
 
 #include <cmath>
@@ -27,7 +26,7 @@ struct Blocked {
   double least_mm = 0;  ///< that it must keep
   enum class Need : std::uint8_t { touch, stock, clearance } need = Need::clearance;  ///< why it must keep that
 };
-/// Nothing where a pose, in the frame of the flank's own tooth 0, is free.
+/// Nothing where a pose is free.
 using Room = std::function<std::optional<Blocked>(const AxisLine<double>&)>;
 
 struct PassOptions {
@@ -39,9 +38,9 @@ struct PassOptions {
   double station = 0.1;   ///< stations, in modules
   double longest = 0.1;   ///< longest block along the anchors, in modules
   double overrun = 0.12;  ///< how far beyond the ends of the ring the last foot is carried, in modules
-  /// Is there something across the inner, the outer end (the other ring, a groove)? There the ball end is lifted out of
-  /// the way.
-  bool lift_inner = false, lift_outer = false;
+  /// Is there something across the end where s begins, where it ends (the other ring, a groove)? There the ball end is
+  /// lifted out of the way.
+  bool lift_from = false, lift_to = false;
   double base_lift = 0;  ///< of the ball end everywhere, along the axis, mm: it leaves more room between the flanks
   double lift_margin = 0.08;  ///< the lift begins where the ball end's foot is so far beyond the end, in modules
   double lift_slope = 1;      ///< mm of lift per mm of contact, at most
@@ -54,17 +53,18 @@ struct PassOptions {
 
 /// What a report draws of a pass.
 struct StationFigures {
-  double r = 0;
-  double lean = 0, eps = 0, tilt = 0;  ///< rad
+  double at = 0;                       ///< along the ring as it is told: a radius, or z
+  double lean = 0, eps = 0, tilt = 0;  ///< rad; the tilt from the gear axis
   double covered = 0;                  ///< share of the height in the ring
   double best = 0;                     ///< misfit of the best pose of this station alone, mm
   double misfit = 0;                   ///< largest gap over the strip less the least, as it is cut, mm
 };
 
 struct LineRecord {
-  double r = 0;
+  double s = 0;
   AxisLine<double> axis;       ///< ball end's centre and direction
   Vec3 anchor = Vec3::Zero();  ///< of the contact, for feeds
+  Place at;                    ///< on the flank below it
   double most = 0;             ///< largest gap over the strip
   double lift = 0;
   double contact_ratio = 1;  ///< way of the tip from the record before, over the way of the contact
@@ -85,9 +85,9 @@ struct LinePass {
   std::optional<Blocked> shortened_by;  ///< what is in the way where a pass ends early, feet in the ring or not
 };
 
-/// Plans a pass. Refused, with quantity, value and limit: a tilt above 60 deg, flutes that end below a contact of any
-/// pose, lifted ones too (`law_end`), a full station without room, fewer than four full stations, an axis condition
-/// that no lean fulfils, a flank whose ends are not reached.
+/// Plans a pass. Refused, with quantity, value and limit: a tilt above 60 deg from upright, flutes that end below a
+/// contact of any pose, lifted ones too (`law_end`), a full station without room, fewer than four full stations, an
+/// axis condition that no lean fulfils, a flank whose ends are not reached.
 /// @param law_end  highest usable t of the tool
 [[nodiscard]] Result<LinePass> plan_pass(const LineFit& fit, const PassOptions& options, double law_end);
 

@@ -14,10 +14,19 @@
 namespace toothpath::line {
 namespace {
 
+constexpr int kMostUpright = 24;   // strips
+constexpr int kMoreStrips = 3;     // than the bend in the middle asks for: the lowest bends more
 constexpr double kBodySag = 0.01;  // mm: how far bodies may stand out of the tool where only rapids ask for them
 
-AxisLine<double> turned_axis(const AxisLine<double>& axis, double angle) {
-  return {turned(axis.c_0, angle), turned(axis.a, angle)};
+Result<std::vector<FlankTask>> flanks_of(const tooth_space::ToothedPart& part, double allowance_mm) {
+  std::vector<FlankTask> flanks;
+  for (int zone = 0; zone < part.zones(); ++zone)
+    for (const int side : {1, -1}) {
+      auto task = flank_task(part, zone, side, allowance_mm);
+      if (!task) return task.error();
+      flanks.push_back(*task);
+    }
+  return flanks;
 }
 
 /// All passes for one choice of strips and rotaries.
@@ -26,7 +35,7 @@ struct Choice {
   Rotaries rotaries = Rotaries::both;
 };
 Result<std::vector<LinePass>> passes_of(const std::vector<FlankTask>& flanks, const tool::Profile& tool,
-                                        const LineOperation& o, const Choice& choice, int rings) {
+                                        const LineOperation& o, const Choice& choice) {
   const std::size_t n = flanks.size() * std::size_t(choice.strips);
   std::vector<std::optional<Result<LinePass>>> found(n);
   WorkShare all{double(n)};
@@ -39,10 +48,11 @@ Result<std::vector<LinePass>> passes_of(const std::vector<FlankTask>& flanks, co
     p.chord_mm = o.chord_tolerance_mm;
     p.bias_mm = o.bias_mm;
     if (int(strip) + 1 == choice.strips) p.base_lift = o.base_lift_mm;
-    p.lift_inner = flank.zone > 0;
-    p.lift_outer = flank.zone + 1 < rings;
-    if (o.room)
-      p.room = [&](const AxisLine<double>& axis) { return o.room(with_allowance(flank, axis, o.allowance_mm)); };
+    for (const auto& other : flanks) {
+      p.lift_from = p.lift_from || other.s_to <= flank.s_from;
+      p.lift_to = p.lift_to || other.s_from >= flank.s_to;
+    }
+    p.room = o.room;
     p.enough_mm = o.left_mm.value_or(INFINITY);
     found[k].emplace(plan_pass(LineFit(flank, *tool.law(), strips_of(flank, choice.strips)[strip]), p, tool.law_end()));
     if (*found[k]) (*found[k])->strip = int(strip);
@@ -61,12 +71,31 @@ double worst_of(const std::vector<LinePass>& passes) {
   return worst;
 }
 
-std::vector<Choice> choices_of(const LineOperation& o) {
+/// 1, or of flanks that are straight along the tooth about as many as `left` asks for.
+int least_strips(const std::vector<FlankTask>& flanks, const tool::Profile& tool, const LineOperation& o) {
+  int least = 1;
+  if (o.left_mm)
+    for (const auto& flank : flanks)
+      least = std::max(least, LineFit(flank, *tool.law(), strips_of(flank, 1)[0]).strips_for(*o.left_mm));
+  return least;
+}
+
+Result<std::vector<Choice>> choices_of(const std::vector<FlankTask>& flanks, const tool::Profile& tool,
+                                       const LineOperation& o) {
+  const int least = least_strips(flanks, tool, o);
+  if (!o.strips && least > kMostUpright)
+    return fail(
+        "left = {:.3f} um asks for {} strips of flanks that are straight along the tooth: each leaves the sag of its "
+        "profile; at most {} are planned; what helps: left = {:.4f} mm, or a finishing with regions = [\"flank\"] by a "
+        "ball end",
+        1e3 * *o.left_mm, least, kMostUpright,
+        std::ceil(1e4 * *o.left_mm * std::pow(double(least) / (kMostUpright - 1), 2)) / 1e4);
   std::vector<Rotaries> rotaries{Rotaries::both};
   if (!o.rotaries.empty()) rotaries = o.rotaries;
   else if (o.left_mm) rotaries = {Rotaries::tilt_stands, Rotaries::both};
   std::vector<Choice> out;
-  const int from = o.strips.value_or(1), to = o.strips ? *o.strips : o.left_mm ? kMostStrips : 1;
+  const int from = o.strips.value_or(least);
+  const int to = o.strips || !o.left_mm ? from : std::max(kMostStrips, least + kMoreStrips);
   for (int n = from; n <= to; ++n)
     for (const auto r : rotaries) out.push_back({n, r});
   return out;
@@ -103,19 +132,13 @@ class PathWriter {
       : o_(o), path_(path), r_0_(tool.law()->r_0), bodies_(tool.proof_bodies(kBodySag)) {}
 
   void add(const FlankTask& flank, const LinePass& pass, int number) {
-    const double turn =
-        flank.side > 0 ? 0 : flank.surface.pitch;  // space 0 lies between flank +1 of tooth 0 and flank -1 of tooth 1
     std::vector<LineRecord> records = pass.records;
-    for (auto& r : records) {
-      r.axis = turned_axis(with_allowance(flank, r.axis, o_.allowance_mm), turn);
-      r.anchor = turned(r.anchor, turn);
-    }
-    if (climbs(records, flank, turn) != o_.climb) std::reverse(records.begin(), records.end());
+    if (climbs(records, flank) != o_.climb) std::reverse(records.begin(), records.end());
     zone_ = flank.zone;
     pass_ = number;
-    record(above(records.front().axis), records.front().axis.a, path::MoveKind::rapid, 0);
+    record(above(records.front().axis, flank), records.front().axis.a, path::MoveKind::rapid, 0);
     const AxisLine<double>& first = records.front().axis;
-    if ((above(first) - tip(first)).norm() > o_.slow_mm)
+    if ((above(first, flank) - tip(first)).norm() > o_.slow_mm)
       record(tip(first) + o_.slow_mm * first.a, first.a, path::MoveKind::engage, link_feed());
     record(tip(first), first.a, path::MoveKind::engage, o_.feed_mm_min);
     for (std::size_t k = 1; k < records.size(); ++k) {
@@ -126,26 +149,27 @@ class PathWriter {
       least_feed_ = std::min(least_feed_, feed);
       record(to, records[k].axis.a, path::MoveKind::feed, feed * (to - from).norm() / contact);
     }
-    record(above(records.back().axis), records.back().axis.a, path::MoveKind::retract, link_feed());
+    record(above(records.back().axis, flank), records.back().axis.a, path::MoveKind::retract, link_feed());
   }
   [[nodiscard]] double link_feed() const { return std::max(o_.feed_mm_min, o_.link_feed_mm_min); }
   [[nodiscard]] double least_feed() const { return least_feed_; }
 
  private:
   [[nodiscard]] Vec3 tip(const AxisLine<double>& axis) const { return axis.c_0 - r_0_ * axis.a; }
-  /// Along the axis until ball, flutes, shank and holder are above the clearance height.
-  [[nodiscard]] Vec3 above(const AxisLine<double>& axis) const {
-    double lowest = axis.c_0.z() - bodies_.ball_radius_mm;
-    for (const auto& f : bodies_.frustums) lowest = std::min(lowest, tool::lowest_z(f, tip(axis), axis.a));
-    return tip(axis) + std::max(0.0, (o_.clearance_height_mm - lowest) / axis.a.z()) * axis.a;
+  /// Along the axis until ball, flutes, shank and holder are above the clearance height. `up` at one place is enough:
+  /// no h of the chart is less than what it measures.
+  [[nodiscard]] Vec3 above(const AxisLine<double>& axis, const FlankTask& flank) const {
+    const Vec3 up = flank.up(axis.c_0), at(0, 0, tip(axis).dot(up)), leans(0, 0, axis.a.dot(up));
+    double lowest = axis.c_0.dot(up) - bodies_.ball_radius_mm;
+    for (const auto& f : bodies_.frustums) lowest = std::min(lowest, tool::lowest_z(f, at, leans));
+    return tip(axis) + std::max(0.0, (o_.clearance_height_mm - lowest) / leans.z()) * axis.a;
   }
   /// Is the material to the right of the feed, seen from the holder?
-  [[nodiscard]] bool climbs(const std::vector<LineRecord>& records, const FlankTask& flank, double turn) const {
+  [[nodiscard]] bool climbs(const std::vector<LineRecord>& records, const FlankTask& flank) const {
     const std::size_t k = records.size() / 2;
     const Vec3 feed = records[k].anchor - records[k - 1].anchor, right = feed.cross(records[k].axis.a);
-    const Vec3 at = turned(records[k].anchor, -turn);
-    const auto on = face_gear::invert_flank(flank.surface, flank.side, at.head<2>().norm(), at.z());
-    return on && turned(flank.surface.flank(flank.side, on->theta, on->B).n, turn).dot(right) < 0;
+    const auto on = flank.space->point(flank.piece(), records[k].at.u, records[k].at.v);
+    return on && on->n.dot(right) < 0;
   }
   void record(const Vec3& tip, const Vec3& axis, path::MoveKind kind, double feed) {
     path_.records.push_back({tip, axis, feed, kind, zone_, pass_});
@@ -168,10 +192,7 @@ bool both_follow(const std::vector<Choice>& choices, const Choice& choice) {
 }
 
 /// Azimuth of the axis in the middle of a pass.
-double azimuth_of(const FlankTask& flank, const LinePass& pass) {
-  const Vec3 a = turned_axis(pass.records[pass.records.size() / 2].axis, flank.side > 0 ? 0 : flank.surface.pitch).a;
-  return std::atan2(a.y(), a.x());
-}
+double azimuth_of(const LinePass& pass) { return azimuth(pass.records[pass.records.size() / 2].axis.a); }
 
 /// Flanks in the order in which the azimuth of the axis turns least over a tooth space and on to the next one: both
 /// flanks of a space lean over opposite teeth. The first one stays; of many rings the order stays as it is.
@@ -181,15 +202,15 @@ std::vector<std::size_t> shortest_order(const std::vector<FlankTask>& flanks, co
   std::vector<std::size_t> order(flanks.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   if (flanks.size() > kMostFlanks || passes.size() != flanks.size() * strips) return order;
-  std::vector<double> azimuth;
+  std::vector<double> azimuths;
   for (std::size_t k = 0; k < flanks.size(); ++k) {
     if (passes[k * strips].records.empty()) return order;
-    azimuth.push_back(azimuth_of(flanks[k], passes[k * strips]));
+    azimuths.push_back(azimuth_of(passes[k * strips]));
   }
   const auto turn_of = [&](const std::vector<std::size_t>& trial) {
     double turn = 0;
     for (std::size_t k = 0; k < trial.size(); ++k)
-      turn += std::abs(std::remainder(azimuth[trial[(k + 1) % trial.size()]] - azimuth[trial[k]], 2 * kPi));
+      turn += std::abs(std::remainder(azimuths[trial[(k + 1) % trial.size()]] - azimuths[trial[k]], 2 * kPi));
     return turn;
   };
   std::vector<std::size_t> best = order;
@@ -199,10 +220,6 @@ std::vector<std::size_t> shortest_order(const std::vector<FlankTask>& flanks, co
 }
 
 }  // namespace
-
-AxisLine<double> with_allowance(const FlankTask& flank, const AxisLine<double>& axis, double allowance_mm) {
-  return turned_axis(axis, flank.side * allowance_mm / flank.surface.M2);
-}
 
 double contact_feed(double feed_mm_min, const FeedLimits& limits, double contact_mm, const Vec3& tip_from,
                     const Vec3& axis_from, const Vec3& tip_to, const Vec3& axis_to) {
@@ -220,26 +237,25 @@ double contact_feed(double feed_mm_min, const FeedLimits& limits, double contact
   return feed;
 }
 
-Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::Profile& tool, const LineOperation& o) {
+Result<LinePlan> plan_line_milling(const tooth_space::ToothedPart& part, const tool::Profile& tool,
+                                   const LineOperation& o) {
   if (!tool.law())
     return fail("line milling needs a tool with a ball end and a side: flat and bull nose cutters have none");
   if (o.strips && (*o.strips < 1 || *o.strips > kMostStrips))
     return fail("strips = {} lies outside 1 .. {}", *o.strips, kMostStrips);
-  std::vector<FlankTask> flanks;
-  for (int zone = 0; zone < int(gear.rings().size()); ++zone)
-    for (const int side : {1, -1}) {
-      auto task = flank_task(gear, zone, side);
-      if (!task) return task.error();
-      flanks.push_back(*task);
-    }
+  auto found = flanks_of(part, o.allowance_mm);
+  if (!found) return found.error();
+  const std::vector<FlankTask> flanks = std::move(*found);
   LinePlan plan;
   double least = INFINITY;
   Choice best;
   std::optional<Diagnostic> refused;
-  const auto choices = choices_of(o);
+  const auto asked = choices_of(flanks, tool, o);
+  if (!asked) return asked.error();
+  const auto& choices = *asked;
   const WorkShare share{double(choices.size())};  // where none suits all are tried
   for (const auto& choice : choices) {
-    auto passes = passes_of(flanks, tool, o, choice, int(gear.rings().size()));
+    auto passes = passes_of(flanks, tool, o, choice);
     if (!passes) {
       // What both rotaries cannot do more strips cannot either; one that stands may have failed by itself.
       if (choice.rotaries == Rotaries::both) return passes.error();

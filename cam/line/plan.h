@@ -1,8 +1,8 @@
 // Line milling of one tooth space: every flank of every ring in the fewest strips and with the fewest rotaries that
 // leave little enough.
 //
-// Asks a face gear, a tool profile and an operation; answers a path (CL records of space 0) and what a report draws of
-// each pass.
+// Asks a toothed part, a tool profile and an operation; answers a path (CL records of space 0) and what a report draws
+// of each pass.
 #pragma once
 
 #include <cmath>
@@ -36,8 +36,8 @@ struct LineOperation {
   int tool = 0;       ///< index into the job's list of tools
   double speed_rpm = 0;
   double feed_mm_min = 0;         ///< of the contact
-  double allowance_mm = 0;        ///< stock that is left, exactly parallel; 0: finishing
-  std::optional<int> strips;      ///< 1 .. 4; none: the least number that meets `left`
+  double allowance_mm = 0;        ///< stock that is left on the flank; 0: finishing
+  std::optional<int> strips;      ///< 1 .. 4; none: the least number that meets `left`, more for an upright tool
   std::optional<double> left_mm;  ///< largest misfit of a pass; none: whatever one strip with both rotaries leaves
   /// Admitted, tried in this order for each number of strips; empty: the tilt stands where that meets `left`, else
   /// both.
@@ -50,13 +50,13 @@ struct LineOperation {
   double slow_mm = INFINITY;    ///< way along the axis before a pass on which stock may be met
   FeedLimits limits;
   bool climb = true;               ///< spindle M3, material to the right of the feed seen from the holder
-  double clearance_height_mm = 0;  ///< z above which every part of the tool is for rapids
-  Room room;                       ///< cam/line/room.h; asked where the tool stands with its allowance
+  double clearance_height_mm = 0;  ///< h of the chart above which every part of the tool is for rapids
+  Room room;                       ///< cam/line/room.h
 };
 
 struct LinePlan {
   path::ClPath path;
-  std::vector<LinePass> passes;  ///< zones from the inside, flank +1 then -1, strips from the tip down; the path may
+  std::vector<LinePass> passes;  ///< zones with rising s, flank +1 then -1, strips from the tip down; the path may
                                  ///< order flanks otherwise
   int strips = 1;
   Rotaries rotaries = Rotaries::both;
@@ -76,12 +76,7 @@ struct LinePlan {
 
 /// Plans one operation. Refused, with quantity, value and limit: a tool without a ball end and a side; everything that
 /// `flank_task` and `plan_pass` refuse; a `left` that no admitted choice meets (the message tells the best one).
-[[nodiscard]] Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::Profile& tool,
+[[nodiscard]] Result<LinePlan> plan_line_milling(const tooth_space::ToothedPart& part, const tool::Profile& tool,
                                                  const LineOperation& operation);
-
-/// A pose in the gear frame for flank `side` of tooth 0 turned so that `allowance` stays: by side * allowance / M2
-/// about z. Exact, because parallel surfaces are rotations.
-[[nodiscard]] AxisLine<double> with_allowance(const FlankTask& flank, const AxisLine<double>& axis,
-                                              double allowance_mm);
 
 }  // namespace toothpath::line

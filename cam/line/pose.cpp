@@ -10,10 +10,14 @@
 namespace toothpath::line {
 namespace {
 
-constexpr int kStripNodes = 25, kNodesAbove = 11;  // Chebyshev points of the strip, and of what lies above it
-constexpr int kWalkSteps = 14;                     // over the height of the flank
-constexpr double kExactEnd = 1e-9;                 // mm: ends of the domain and heights of the ball end
-constexpr double kStandsStill = 1e-8;              // mm: predicted gain at which the best pose is found
+constexpr int kStripNodes = 25, kNodesAbove = 11;   // Chebyshev points of the strip, and of what lies above it
+constexpr int kWalkSteps = 14;                      // over the height of the flank
+constexpr std::size_t kMostFeet = 16 * kWalkSteps;  // of a walk
+constexpr double kLeastRise = 0.1;                  // of an axis, as far as steps follow it
+constexpr int kDepthSteps = 3, kNewtonSteps = 25;   // from the tip edge to a depth; and to a place in all
+constexpr double kLastStep = 1e-7;                  // of the module: the step after one is exact, the search quadratic
+constexpr double kExactEnd = 1e-9;                  // mm: ends of the domain and heights of the ball end
+constexpr double kStandsStill = 1e-8;               // mm: predicted gain at which the best pose is found
 constexpr int kLinearisations = 30;
 constexpr double kFirstTrust = 0.1;  // rad of lean in one step; a quarter of it in eps
 
@@ -29,6 +33,9 @@ double root_between(const F& g, double a, double ga, double b, double gb) {
   return 0.5 * (bracket.first + bracket.second);
 }
 
+/// Where the foot at t is to be expected: on the line through two others.
+Place expected(const GapNode& a, const GapNode& b, double t) { return between(a.at, b.at, (t - a.t) / (b.t - a.t)); }
+
 /// Vertex of the parabola through three nodes, or the middle one where they do not bend.
 double vertex(const GapNode& a, const GapNode& b, const GapNode& c) {
   const double d0 = (b.e - a.e) / (b.t - a.t), d1 = (c.e - b.e) / (c.t - b.t), bend = (d1 - d0) / (c.t - a.t);
@@ -37,103 +44,157 @@ double vertex(const GapNode& a, const GapNode& b, const GapNode& c) {
 
 }  // namespace
 
-Result<FlankTask> flank_task(const face_gear::FaceGear& gear, int zone, int side) {
-  const auto& ring = gear.rings()[std::size_t(zone)];
-  const auto& p = gear.parameters();
-  if (std::abs(p.shaft_angle_rad - kPi / 2) > 1e-12)
-    return fail(
-        "shaft_angle = {:.4f} deg: line milling is known for 90 deg only, where the tips lie in a plane and all that "
-        "is above it is free",
-        degrees(p.shaft_angle_rad));
+Vec3 FlankTask::up(const Vec3& p) const {
+  const auto& c = chart();
+  if (c.sine == 0) return {0, 0, c.cosine};
+  const double out = c.sine / radius(p);
+  return {out * p.x(), out * p.y(), c.cosine};
+}
+
+std::optional<FlankPlace> FlankTask::at_depth(double s, double asked) const {
+  const auto edge = space->tip_edge(side, s);
+  if (!edge) return {};
+  FlankPlace f{{edge->u, edge->v}, {}};
+  const double tip_height = space->tip(s);
+  bool arrived = false;
+  for (int k = 0; k < kNewtonSteps; ++k) {
+    const auto q = space->at(piece(), f.at.u, f.at.v);
+    if (!q) return {};
+    f.on = *q;
+    if (arrived) return f;
+    // Down in a few steps, then on to the place.
+    const double height = tip_height - asked * std::min(1.0, double(k + 1) / kDepthSteps);
+    const double ds = s - along(q->p), dh = height - chart().up(q->p);
+    const double su = chart().along(q->p, q->pu), sv = chart().along(q->p, q->pv), hu = chart().up(q->p, q->pu),
+                 hv = chart().up(q->p, q->pv), det = su * hv - sv * hu;
+    if (det == 0) return {};
+    f.at.u += (ds * hv - sv * dh) / det;
+    f.at.v += (su * dh - ds * hu) / det;
+    arrived = k >= kDepthSteps && std::abs(ds) + std::abs(dh) < kLastStep * module_mm;
+  }
+  return {};
+}
+
+namespace {
+
+/// Where the flank meets the fillet at a station; nothing where its fillet line does not reach it.
+std::optional<tooth_space::PatchPoint> fillet_line(const FlankTask& t, double s) {
+  const auto edge = t.space->tip_edge(t.side, s);
+  const auto near = edge ? std::optional(tooth_space::Near{edge->v, s}) : std::nullopt;
+  for (int attempt = 0; attempt < tooth_space::ToothSpace::kStarts; ++attempt) {
+    auto v = t.space->start_v(t.piece(), t.u_end, s, 0, near, attempt);
+    bool arrived = false;
+    for (int k = 0; v && k < kNewtonSteps; ++k) {
+      const auto q = t.space->at(t.piece(), t.u_end, *v);
+      if (!q) break;
+      if (arrived) return q;
+      const double lack = s - t.along(q->p), most = t.space->longest_step(t.piece(), s);
+      arrived = std::abs(lack) < kLastStep * t.module_mm;
+      *v += std::clamp(lack / t.chart().along(q->p, q->pv), -most, most);
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<FlankTask> flank_task(const tooth_space::ToothedPart& part, int zone, int side, double allowance_mm) {
   FlankTask t;
-  t.surface = ring.surface;
+  t.space = &part.space(zone);
   t.zone = zone;
   t.side = side;
-  t.inner_radius = ring.zone.inner_radius_mm;
-  t.outer_radius = ring.zone.outer_radius_mm;
-  const double middle = 0.5 * (t.inner_radius + t.outer_radius);
-  t.z_tip = ring.surface.z_tip(middle);
-  t.theta_end = ring.surface.shaper.theta_t;
-  const auto z_end = face_gear::fillet_line_height(ring.surface, side, middle);
-  if (!z_end || !(*z_end < t.z_tip))
-    return fail("zone {}: flank {:+d} has no fillet line below the tips at radius {:.3f} mm", zone, side, middle);
-  t.z_end = *z_end;
-  t.module_mm = p.module_mm;
-  if (ring.displaced()) t.displaced = std::make_shared<const face_gear::SpaceSheet>(p, ring);
+  t.module_mm = part.module_mm();
+  t.allowance_mm = allowance_mm;
+  const auto& outline = t.space->outline();
+  t.s_from = outline.s_from;
+  t.s_to = outline.s_to;
+  const auto borders = t.space->borders(t.piece());
+  t.u_end = side > 0 ? borders.to : borders.from;
+  const double middle = 0.5 * (t.s_from + t.s_to);
+  const auto end = fillet_line(t, middle);
+  if (end) t.depth = t.depth_of(end->p);
+  if (!(t.depth > 0))
+    return fail("zone {}: flank {:+d} has no fillet line below the tips at {} {:.3f} mm", zone, side, outline.along,
+                outline.sign * middle);
+  t.mm_per_u = std::copysign(end->pu.norm(), (side > 0 ? borders.from : borders.to) - t.u_end);
   return t;
 }
 
 std::vector<Strip> strips_of(const FlankTask& flank, int n) {
   std::vector<Strip> out;
-  const double height = (flank.z_tip - flank.z_end) / n;
+  const double height = flank.depth / n;
   for (int k = 0; k < n; ++k) {
     Strip s;
-    s.top = flank.z_tip - k * height;
+    s.top = k * height;
     const bool lowest = k + 1 == n;
-    if (!lowest) s.bottom = s.top - height;
-    s.anchor = s.top - (n > 1 && lowest ? 0.15 : 0.5) * height;
+    if (!lowest) s.bottom = s.top + height;
+    s.anchor = s.top + (n > 1 && lowest ? 0.15 : 0.5) * height;
     out.push_back(s);
   }
   return out;
 }
 
-std::optional<LineFit::Anchor> LineFit::anchor(double r) const {
-  const auto at = face_gear::invert_flank(flank_.surface, flank_.side, r, strip_.anchor);
-  if (!at || !(at->J > 0)) return {};
-  const auto on = flank_.surface.flank(flank_.side, at->theta, at->B);
-  return Anchor{{at->theta, at->B}, on.p, tangent_frame<double>(flank_.side, on.n)};
+std::optional<LineFit::Anchor> LineFit::anchor(double s) const {
+  auto place = flank_.at_depth(s, strip_.anchor);
+  if (!place) return {};
+  const auto& on = place->on;
+  return Anchor{*place, on.p + flank_.allowance_mm * on.n, flank_.frame(on)};
 }
 
-std::optional<GapNode> LineFit::gap_at(const AxisLine<double>& axis, double t, const Place<double>& start) const {
-  const Vec3 x = axis.at(t);
-  const auto foot = flank_foot<double>(flank_.surface, flank_.side, x, start);
+std::optional<GapNode> LineFit::gap_at(const AxisLine<double>& axis, double t, const Place& start) const {
+  const double touches = law_.rho(t) + flank_.allowance_mm;
+  const auto foot = flank_.space->next_foot(flank_.piece(), axis.at(t), {start.u, start.v, touches, {}});
   if (!foot) return {};
-  if (flank_.displaced) return displaced_gap(x, t, *foot);
-  const Vec3 touched = x - foot->d * foot->n;
-  return GapNode{t, foot->d - law_.rho(t), touched.head<2>().norm(), touched.z(), foot->theta_foot, foot->at, foot->n};
-}
-
-/// On a modified or corrected flank: from the foot on the plain one, hundredths of a millimetre away.
-std::optional<GapNode> LineFit::displaced_gap(const Vec3& x, double t, const face_gear::FlankFoot<double>& near) const {
-  const Turn to_space(flank_.side > 0 ? 0.0 : flank_.surface.pitch);
-  const auto foot = flank_.displaced->foot(tooth_space::flank_of(flank_.side), to_space(x), near.theta_foot, near.at.B);
-  if (!foot) return {};
-  return GapNode{t,       foot->distance - law_.rho(t), foot->at.p.head<2>().norm(), foot->at.p.z(), foot->u,
-                 near.at, to_space.back(foot->at.n)};
+  const auto& q = foot->at;
+  GapNode node;
+  node.t = t;
+  node.e = foot->distance - touches;
+  node.s = flank_.along(q.p);
+  node.depth = flank_.depth_of(node.s, q.p);
+  node.above_fillet = flank_.above_fillet(foot->u);
+  node.at = {foot->u, foot->v};
+  node.n = q.n;
+  return node;
 }
 
 /// How far a foot lies inside the trimmed flank and a rim beyond the ends of the ring; negative outside. mm
 double LineFit::inside(const GapNode& q, double rim) const {
-  const double to_fillet = (flank_.theta_end - q.theta_foot) * flank_.surface.shaper.r_b / flank_.surface.shaper.cos_bb;
-  return std::min(
-      {to_fillet, flank_.z_tip - q.z_foot, q.r_foot - flank_.inner_radius + rim, flank_.outer_radius + rim - q.r_foot});
+  return std::min({q.above_fillet, q.depth, q.s - flank_.s_from + rim, flank_.s_to + rim - q.s});
 }
 
 double LineFit::above_bottom(const GapNode& q) const {
-  if (strip_.bottom) return q.z_foot - *strip_.bottom;
-  return (flank_.theta_end - q.theta_foot) * flank_.surface.shaper.r_b / flank_.surface.shaper.cos_bb;
+  return strip_.bottom ? *strip_.bottom - q.depth : q.above_fillet;
 }
 
 /// Does a foot count for what is left: within the strip and the ring?
 bool LineFit::in_strip(const GapNode& q) const {
-  return q.z_foot <= strip_.top + 10 * kExactEnd && above_bottom(q) >= -10 * kExactEnd &&
-         q.r_foot >= flank_.inner_radius - 10 * kExactEnd && q.r_foot <= flank_.outer_radius + 10 * kExactEnd;
+  return q.depth >= strip_.top - 10 * kExactEnd && above_bottom(q) >= -10 * kExactEnd &&
+         q.s >= flank_.s_from - 10 * kExactEnd && q.s <= flank_.s_to + 10 * kExactEnd;
+}
+
+/// Of a walk along an axis, mm.
+double LineFit::step_along(const AxisLine<double>& axis) const {
+  return flank_.depth / std::max(kLeastRise, axis.a.dot(flank_.up(axis.c_0))) / kWalkSteps;
 }
 
 /// Feet from the ball end up to the first above the tips, in even steps; fewer where the regular sheet ends.
-std::vector<GapNode> LineFit::walk(const AxisLine<double>& axis, double t_start, const Place<double>& start) const {
-  const double step = (flank_.z_tip - flank_.z_end) / axis.a.z() / kWalkSteps;
+std::vector<GapNode> LineFit::walk(const AxisLine<double>& axis, double t_start, const Place& start) const {
+  const double step = step_along(axis);
   const auto first = gap_at(axis, t_start, start);
   if (!first) return {};
   std::vector<GapNode> out{*first};
+  const auto to = [&](double t) {
+    const std::size_t n = out.size();
+    return gap_at(axis, t, n < 2 ? out.back().at : expected(out[n - 2], out[n - 1], t));
+  };
   while (out.back().t > 0) {
-    const auto q = gap_at(axis, std::max(0.0, out.back().t - step), out.back().at);
+    const auto q = to(std::max(0.0, out.back().t - step));
     if (!q) break;
     out.push_back(*q);
   }
   std::reverse(out.begin(), out.end());
-  while (out.back().z_foot < flank_.z_tip) {
-    const auto q = gap_at(axis, out.back().t + step, out.back().at);
+  while (out.back().depth > 0 && out.size() < kMostFeet) {
+    const auto q = to(out.back().t + step);
     if (!q) break;
     out.push_back(*q);
   }
@@ -145,21 +206,18 @@ template <typename F>
 double LineFit::crossing(const AxisLine<double>& axis, const GapNode& a, const GapNode& b, const F& g) const {
   return root_between(
       [&](double t) {
-        const auto q = gap_at(axis, t, a.at);
+        const auto q = gap_at(axis, t, expected(a, b, t));
         return q ? g(*q) : NAN;
       },
       a.t, g(a), b.t, g(b));
 }
 
-std::optional<GapLine> LineFit::gap_along(const AxisLine<double>& axis, double t_start,
-                                          const Place<double>& start) const {
+std::optional<GapLine> LineFit::gap_along(const AxisLine<double>& axis, double t_start, const Place& start) const {
   const auto feet = walk(axis, t_start, start);
   if (feet.empty()) return {};
   GapLine line;
-  const auto to_tip = [&](const GapNode& q) { return flank_.z_tip - q.z_foot; };
-  const auto beyond = [&](const GapNode& q) {
-    return std::max({0.0, flank_.inner_radius - q.r_foot, q.r_foot - flank_.outer_radius});
-  };
+  const auto to_tip = [&](const GapNode& q) { return q.depth; };
+  const auto beyond = [&](const GapNode& q) { return std::max({0.0, flank_.s_from - q.s, q.s - flank_.s_to}); };
   const bool reaches = feet.size() > 1 && to_tip(feet.back()) <= 0 && to_tip(feet[feet.size() - 2]) > 0;
   line.t_top = reaches ? crossing(axis, feet[feet.size() - 2], feet.back(), to_tip) : feet.back().t;
   line.beyond_ring = INFINITY;
@@ -187,8 +245,8 @@ std::optional<GapLine> LineFit::gap_along(const AxisLine<double>& axis, double t
     line.ring_from = line.ring_to = inside(*from, 0) > inside(*to, 0) ? line.t_from : line.t_to;
   }
   std::vector<double> splits{line.t_from, line.ring_from, line.ring_to, line.t_to};
-  const auto below_top = [&](const GapNode& q) { return strip_.top - q.z_foot; };
-  if (strip_.top < flank_.z_tip - kExactEnd)
+  const auto below_top = [&](const GapNode& q) { return q.depth - strip_.top; };
+  if (strip_.top > kExactEnd)
     for (std::size_t k = 1; k < feet.size(); ++k)
       if (below_top(feet[k - 1]) > 0 && below_top(feet[k]) <= 0)
         splits.push_back(std::clamp(crossing(axis, feet[k - 1], feet[k], below_top), line.t_from, line.t_to));
@@ -198,8 +256,7 @@ std::optional<GapLine> LineFit::gap_along(const AxisLine<double>& axis, double t
 
 /// Chebyshev points over the whole domain and, where the strip ends below the tips, over the strip; all splits are
 /// nodes.
-bool LineFit::add_nodes(const AxisLine<double>& axis, std::vector<double> splits, Place<double> start,
-                        GapLine& line) const {
+bool LineFit::add_nodes(const AxisLine<double>& axis, std::vector<double> splits, Place start, GapLine& line) const {
   const double top = splits.size() > 4 ? splits.back() : line.t_to;
   const auto points = [&](double a, double b, int count) {
     for (int k = 1; k + 1 < count; ++k)
@@ -210,9 +267,10 @@ bool LineFit::add_nodes(const AxisLine<double>& axis, std::vector<double> splits
   std::sort(splits.begin(), splits.end());
   for (const double t : splits) {
     if (!line.nodes.empty() && t - line.nodes.back().t < kExactEnd) continue;
-    const auto q = gap_at(axis, t, start);
+    const std::size_t n = line.nodes.size();
+    const auto q = gap_at(axis, t, n < 2 ? start : expected(line.nodes[n - 2], line.nodes[n - 1], t));
     if (!q) return false;
-    start = q->at;
+    if (n == 0) start = q->at;
     line.nodes.push_back(*q);
   }
   return true;
@@ -227,13 +285,16 @@ bool LineFit::extremes(const AxisLine<double>& axis, GapLine& line) const {
       line.least = q.e;
       line.n_least = q.n;
     }
-    if (in_strip(q)) line.most = std::max(line.most, q.e);
+    if (!in_strip(q)) return;
+    line.strip_in_ring = true;
+    line.most = std::max(line.most, q.e);
   };
   for (const auto& q : line.nodes) look(q);
   for (std::size_t k = 1; k + 1 < line.nodes.size(); ++k) {
     const auto &a = line.nodes[k - 1], &b = line.nodes[k], &c = line.nodes[k + 1];
     if ((b.e < a.e) != (b.e < c.e)) continue;
-    const auto q = gap_at(axis, vertex(a, b, c), b.at);
+    const double t = vertex(a, b, c);
+    const auto q = gap_at(axis, t, expected(a, c, t));
     if (!q) return false;
     look(*q);
   }
@@ -242,12 +303,12 @@ bool LineFit::extremes(const AxisLine<double>& axis, GapLine& line) const {
 }
 
 std::optional<double> LineFit::reach_bottom(const Anchor& anchor, PoseAngles<double> pose) const {
-  std::optional<Place<double>> last;
+  std::optional<Place> last;
   const auto height = [&](double t_m) {
     pose.t_m = t_m;
     const auto axis = axis_of<double>(anchor.P, anchor.frame, law_, pose);
     if (!last) {
-      last = Place<double>{theta_at_distance(flank_.surface, anchor.at.theta, law_.rho(t_m) + pose.delta), anchor.at.B};
+      last = anchor.place.at;
       for (const double share : {0.75, 0.5, 0.25})
         if (const auto q = gap_at(axis, share * t_m, *last)) last = q->at;
     }
@@ -256,8 +317,7 @@ std::optional<double> LineFit::reach_bottom(const Anchor& anchor, PoseAngles<dou
     last = q->at;
     return above_bottom(*q);
   };
-  double low = 0, b_low = height(0), high = 1.3 * (strip_.anchor - (strip_.bottom ? *strip_.bottom : flank_.z_end)),
-         b_high = height(high);
+  double low = 0, b_low = height(0), high = 1.3 * (bottom_depth() - strip_.anchor), b_high = height(high);
   if (b_low < 0) return {};
   for (int k = 0; k < 8 && b_high > 0; ++k) {
     low = high;
@@ -277,18 +337,19 @@ bool LineFit::measure(StationPose& pose) const {
   return true;
 }
 
-std::optional<StationPose> LineFit::posed(double r, const Anchor& anchor, PoseAngles<double> angles,
+std::optional<StationPose> LineFit::posed(double s, const Anchor& anchor, PoseAngles<double> angles,
                                           double lift) const {
   const auto t_m = reach_bottom(anchor, angles);
   if (!t_m) return {};
   StationPose pose;
-  pose.r = r;
+  pose.s = s;
   pose.lift = lift;
   angles.t_m = *t_m;
+  pose.at = anchor.place.at;
   pose.anchor = anchor.P;
+  pose.up = flank_.up(anchor.P);
   pose.angles = angles;
   pose.axis = axis_of<double>(anchor.P, anchor.frame, law_, angles);
-  pose.at = {theta_at_distance(flank_.surface, anchor.at.theta, law_.rho(*t_m) + angles.delta), anchor.at.B};
   return pose;
 }
 
@@ -302,42 +363,68 @@ void LineFit::settle(StationPose& pose, const Anchor& anchor, double bias) const
   }
 }
 
-std::optional<StationPose> LineFit::start(double r) const {
-  const auto at = anchor(r);
+/// Of an axis that touches at t_m, eps = 0: along the wanted direction, upright where that lies along the tooth.
+std::optional<double> LineFit::wanted_lean(const Anchor& at, double t_m) const {
+  const auto psi = lean(shape_at(at.frame, at.place.on), law_.rho(t_m) + flank_.allowance_mm);
+  if (!psi) return {};
+  const Vec3 a = axis_direction<double>(at.frame, *psi, std::asin(law_.slope(t_m)));
+  return a.dot(flank_.up(at.P)) < std::cos(kAlongTheTooth) ? 0 : *psi;
+}
+
+std::optional<StationPose> LineFit::start(double s) const {
+  const auto at = anchor(s);
   if (!at) return {};
   PoseAngles<double> angles;
-  angles.t_m = 1.2 * (strip_.anchor - (strip_.bottom ? *strip_.bottom : flank_.z_end));
+  angles.t_m = 1.2 * (bottom_depth() - strip_.anchor);
   for (int k = 0; k < 2; ++k) {
-    const auto psi = lean<double>(flank_.surface, flank_.side, at->at, law_.rho(angles.t_m));
+    const auto psi = wanted_lean(*at, angles.t_m);
     if (!psi) return {};
     angles.psi = *psi;
     const auto t_m = reach_bottom(*at, angles);
     if (!t_m) return {};
     angles.t_m = *t_m;
   }
-  auto pose = posed(r, *at, angles, 0);
+  auto pose = posed(s, *at, angles, 0);
   if (!pose || !measure(*pose)) return {};
+  pose->about.psi = angles.psi;
+  if (angles.psi == 0) pose->about.most_psi = 0;  // upright strips gain nothing by a lean
+  // Where the flank bends along the line a strip that is anchored near its top turns by as much as it bends.
+  const double bend = shape_at(at->frame, at->place.on).along(std::cos(angles.psi), std::sin(angles.psi));
+  pose->about.most_eps = std::max(pose->about.most_eps, std::abs(bend) * pose->gap.t_top);
   return pose;
 }
 
-std::optional<StationPose> LineFit::place(double r, double psi, double eps, double delta, double lift,
+int LineFit::strips_for(double left_mm) const {
+  const double middle = 0.5 * (flank_.s_from + flank_.s_to);
+  const auto pose = start(middle);
+  const auto at = anchor(middle);
+  if (!pose || !at || pose->about.most_psi > 0) return 1;
+  const double bend = shape_at(at->frame, at->place.on).pp, height = flank_.depth / at->frame.p.dot(pose->up);
+  return std::max(1, int(std::ceil(height * std::sqrt(std::abs(bend) / (8 * left_mm)))));
+}
+
+std::optional<StationPose> LineFit::place(double s, double psi, double eps, double delta, double lift,
                                           std::optional<double> bias) const {
-  const auto at = anchor(r);
+  const auto at = anchor(s);
   if (!at) return {};
-  auto pose = posed(r, *at, {psi, eps, delta, 0}, lift);
+  auto pose = posed(s, *at, {psi, eps, delta, 0}, lift);
   if (!pose) return {};
   if (lift != 0) {
     pose->angles.t_m -= lift;
     pose->axis = axis_of<double>(at->P, at->frame, law_, pose->angles);
-    pose->at = {theta_at_distance(flank_.surface, at->at.theta, law_.rho(pose->angles.t_m) + delta), at->at.B};
   }
   if (!measure(*pose)) return {};
-  if (bias && pose->gap.in_ring()) settle(*pose, *at, *bias);
-  return pose;
+  if (!bias || !pose->gap.in_ring()) return pose;
+  auto settled = *pose;
+  settle(settled, *at, *bias);
+  // What is left in the ring lies beside the strip, and may stand far off.
+  const bool whole = strip_.top == 0 && !strip_.bottom;
+  if (!whole && !settled.gap.strip_in_ring && settled.angles.delta < delta) return pose;
+  return settled;
 }
 
-std::optional<double> LineFit::eps_under(double r, double psi, double t_m, const AxisCondition& condition) const {
-  const auto at = anchor(r);
+std::optional<double> LineFit::eps_under(double s, double psi, double t_m, const AxisCondition& condition) const {
+  const auto at = anchor(s);
   if (!at) return {};
   // A cos(sigma) + C sin(sigma) = c
   const Vec3 u = std::cos(psi) * at->frame.p + std::sin(psi) * at->frame.o;
@@ -386,23 +473,24 @@ std::optional<PoseAngles<double>> LineFit::step(const StationPose& pose, const A
   return to;
 }
 
-std::optional<StationPose> LineFit::best(double r, const std::optional<AxisCondition>& condition,
+std::optional<StationPose> LineFit::best(double s, const std::optional<AxisCondition>& condition,
                                          const std::optional<Neighbourhood>& near) const {
-  const auto at = anchor(r);
-  auto pose = start(r);
+  const auto at = anchor(s);
+  auto pose = start(s);
   if (!at || !pose) return {};
   const auto under = [&](PoseAngles<double> angles) -> std::optional<StationPose> {
     if (condition) {
-      const auto eps = eps_under(r, angles.psi, angles.t_m, *condition);
+      const auto eps = eps_under(s, angles.psi, angles.t_m, *condition);
       if (!eps) return {};
       angles.eps = *eps;
     }
-    auto moved = posed(r, *at, angles, 0);
+    auto moved = posed(s, *at, angles, 0);
     if (!moved || !measure(*moved)) return {};
     return moved;
   };
   PoseAngles<double> from = pose->angles;
-  const Neighbourhood about = near ? *near : Neighbourhood{from.psi, from.eps};
+  Neighbourhood about = near ? *near : pose->about;
+  if (condition && !near) about.most_psi = Neighbourhood{}.most_psi;
   from.psi = about.psi;
   from.eps = about.eps;
   pose = under(from);
@@ -419,29 +507,21 @@ std::optional<StationPose> LineFit::best(double r, const std::optional<AxisCondi
   return pose;
 }
 
-double LineFit::lift_to(const StationPose& pose, double r_most, int sense) const {
-  const double step = (flank_.z_tip - flank_.z_end) / pose.axis.a.z() / kWalkSteps;
+double LineFit::lift_to(const StationPose& pose, double s_most, int sense) const {
+  const double step = step_along(pose.axis);
   auto last = gap_at(pose.axis, std::max(pose.angles.t_m, 0.0), pose.at);
-  const auto beyond = [&](const GapNode& q) { return sense * (q.r_foot - r_most); };
+  const auto beyond = [&](const GapNode& q) { return sense * (q.s - s_most); };
   // Down to the ball end, then up to the first foot that is not beyond.
   for (double t = pose.angles.t_m; last && t > 0;) {
     t = std::max(0.0, t - step);
     last = gap_at(pose.axis, t, last->at);
   }
   if (!last || beyond(*last) <= 0) return 0;
-  while (last->z_foot < flank_.z_tip) {
-    const auto next = gap_at(pose.axis, last->t + step, last->at);
-    if (!next) break;
-    if (beyond(*next) <= 0) {
-      const Place<double> near = last->at;
-      return root_between(
-          [&](double t) {
-            const auto q = gap_at(pose.axis, t, near);
-            return q ? beyond(*q) : NAN;
-          },
-          last->t, beyond(*last), next->t, beyond(*next));
-    }
-    last = next;
+  for (std::size_t k = 0; last->depth > 0 && k < kMostFeet; ++k) {
+    const auto above = gap_at(pose.axis, last->t + step, last->at);
+    if (!above) break;
+    if (beyond(*above) <= 0) return crossing(pose.axis, *last, *above, beyond);
+    last = above;
   }
   return last->t;
 }

@@ -12,17 +12,17 @@ namespace {
 
 constexpr double kKeySpacing = 0.05;  // mm of radius, at least, between two keys
 
-/// Keys of one pass, in the space behind flank +1 of tooth 0; `aside` is added to their lean to the side.
+/// Keys of one pass; `aside` is added to their lean to the side.
 std::vector<path::ToolAxisKey> keys_of(const line::LinePass& pass, const tooth_space::Outline& ring,
-                                       const ball::PitchFrame& frame, double turn, double aside) {
+                                       const ball::PitchFrame& frame, double aside) {
   std::vector<path::ToolAxisKey> keys;
   for (const line::LineRecord& record : pass.records) {
     // A pose that is lifted lies on the axis of one that is not, farther out or in: not at its own radius.
     if (record.lift > 0) continue;
-    const Vec3 a = turned(record.axis.a, turn);
+    const Vec3& a = record.axis.a;
     const double up = a.dot(frame.up);
-    keys.push_back(
-        {ring.sign * ring.chart.along(record.axis.c_0), std::atan(a.dot(frame.outwards) / up), std::atan(a.dot(frame.side) / up) + aside});
+    keys.push_back({ring.sign * ring.chart.along(record.axis.c_0), std::atan(a.dot(frame.outwards) / up),
+                    std::atan(a.dot(frame.side) / up) + aside});
   }
   std::stable_sort(keys.begin(), keys.end(), [](const auto& a, const auto& b) { return a.radius_mm < b.radius_mm; });
   std::vector<path::ToolAxisKey> apart;
@@ -44,8 +44,8 @@ ball::Leading beside_side(const analytic::GearDistance& part, const line::LinePl
       ball::LedAxes led;
       for (const line::LinePass& pass : side.passes) {
         if (pass.zone != zone || pass.strip != side.strips - 1) continue;
-        if (pass.side > 0) led.plus = keys_of(pass, ring, frame, 0, off);
-        else led.minus = keys_of(pass, ring, frame, part.part().pitch(), -off);
+        if (pass.side > 0) led.plus = keys_of(pass, ring, frame, off);
+        else led.minus = keys_of(pass, ring, frame, -off);
       }
       if (!led.plus.empty() && !led.minus.empty()) trials.push_back(std::move(led));
     }

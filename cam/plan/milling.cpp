@@ -9,7 +9,6 @@
 #include "cam/plan/beside_side.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
-#include "geometry/face_gear/part.h"
 
 namespace toothpath::plan {
 namespace {
@@ -87,7 +86,7 @@ constexpr double kTrialStep = 0.05;                               // mm
 class MillingPlanner {
  public:
   MillingPlanner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
-                  const std::vector<path::MillingOperation>& operations, const Options& options)
+                 const std::vector<path::MillingOperation>& operations, const Options& options)
       : part_(part),
         tools_(tools),
         asked_(operations),
@@ -282,7 +281,7 @@ class MillingPlanner {
     }
     asked.room = line::room_of(part_, profile, room);
     std::optional<Result<line::LinePlan>> planned;
-    const auto work = [&] { planned.emplace(line::plan_line_milling(face_gear::gear_of(part_.part()), profile, asked)); };
+    const auto work = [&] { planned.emplace(line::plan_line_milling(part_.part(), profile, asked)); };
     if (o_.stage) o_.stage("line passes", work);
     else work();
     if (!*planned) return line_refusal(n, planned->error());
@@ -343,9 +342,13 @@ class MillingPlanner {
     const tool::Profile mill = tool::profile_of(tool);
     const tool::ProofTool bodies = tool::proof_tool(tool);
     const std::vector<const cut::Removed*> before = cleared();
-    const cut::EngagementQuery query{
-        mill,   bodies.cutting,        before, [&](const Vec3& p) { return part_.part().in_blank(p); },
-        part_.part().highest_z(), one_of,   part_.part().chart()};
+    const cut::EngagementQuery query{mill,
+                                     bodies.cutting,
+                                     before,
+                                     [&](const Vec3& p) { return part_.part().in_blank(p); },
+                                     part_.part().highest_z(),
+                                     one_of,
+                                     part_.part().chart()};
     std::vector<cut::Engaged> engaged;
     const auto work = [&] { engaged = cut::engagement_along(analytic::GougeCheck::motions_of(path), query); };
     if (o_.stage) o_.stage("engagement", work);
@@ -372,9 +375,9 @@ class MillingPlanner {
 }  // namespace
 
 Expected<MillingPlan, ball::PlanRefusal> plan_milling(const analytic::GearDistance& part,
-                                                         const std::vector<tool::ToolAssembly>& tools,
-                                                         const std::vector<path::MillingOperation>& operations,
-                                                         const Options& options, const Progress& progress) {
+                                                      const std::vector<tool::ToolAssembly>& tools,
+                                                      const std::vector<path::MillingOperation>& operations,
+                                                      const Options& options, const Progress& progress) {
   return MillingPlanner(part, tools, operations, options).run(progress);
 }
 

@@ -388,4 +388,18 @@ std::optional<PatchFoot> SpaceSheet::foot(Piece piece, const Vec3& c, double u, 
   return {};
 }
 
+std::optional<PatchFoot> SpaceSheet::next_foot(Piece piece, const Vec3& c, const PatchFoot& near) const {
+  if (!is_flank(piece)) return ToothSpace::next_foot(piece, c, near);
+  const int side = side_of(piece);
+  const auto foot = flank_foot<double>(ring_.surface, side, side > 0 ? c : to_minus_.back(c),
+                                       {theta_at_distance<double>(ring_.surface, near.u, near.distance), near.v});
+  if (!foot) return {};
+  PatchFoot f{foot->theta_foot, foot->at.B, foot->d, {}};
+  // A displaced flank lies hundredths of a millimetre away.
+  if (ring_.displaced()) return ToothSpace::next_foot(piece, c, f);
+  f.at.n = side > 0 ? foot->n : to_minus_(foot->n);
+  f.at.p = c - f.distance * f.at.n;
+  return f;
+}
+
 }  // namespace toothpath::face_gear

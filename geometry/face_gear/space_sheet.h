@@ -45,6 +45,8 @@ class SpaceSheet final : public tooth_space::ToothSpace {
   /// Newton from (u, v); nothing if it does not converge (1e-12 mm) in 30 steps.
   [[nodiscard]] std::optional<PatchFoot> foot(tooth_space::Piece piece, const Vec3& c, double u,
                                               double v) const override;
+  [[nodiscard]] std::optional<PatchFoot> next_foot(tooth_space::Piece piece, const Vec3& c,
+                                                   const PatchFoot& near) const override;
   [[nodiscard]] std::optional<EdgePlace> tip_edge(int side, double r,
                                                   const std::optional<EdgePlace>& near = {}) const override;
   [[nodiscard]] std::optional<EdgePlace> plain_tip_edge(int side, double r,

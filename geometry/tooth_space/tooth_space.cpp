@@ -4,6 +4,14 @@
 
 namespace toothpath::tooth_space {
 
+std::optional<PatchFoot> ToothSpace::next_foot(Piece piece, const Vec3& c, const PatchFoot& near) const {
+  const auto f = foot(piece, c, near.u, near.v);
+  if (!f) return {};
+  const PatchPoint& q = f->at;
+  const Vec3 parallel = (q.pu + f->distance * q.nu).cross(q.pv + f->distance * q.nv);
+  return parallel.dot(q.pu.cross(q.pv)) > 0 ? f : std::nullopt;
+}
+
 std::optional<CurveBend> ToothSpace::tip_azimuth(int side, const EdgePlace& from, double s_from, const EdgePlace& to,
                                                  double s_to) const {
   const Chart& chart = outline().chart;

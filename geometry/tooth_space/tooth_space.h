@@ -127,6 +127,9 @@ class ToothSpace {
   }
   /// The local nearest place, from (u, v); nothing where it is not found. It may lie beyond the borders of the piece.
   [[nodiscard]] virtual std::optional<PatchFoot> foot(Piece piece, const Vec3& c, double u, double v) const = 0;
+  /// The same from a foot nearby, derivatives of place and normal may be unset; and nothing where the ball about c does
+  /// not fit the hollow of the piece there.
+  [[nodiscard]] virtual std::optional<PatchFoot> next_foot(Piece piece, const Vec3& c, const PatchFoot& near) const;
   /// Where the flank of `side` of tooth 0 meets the tip surface at s; `near`: a place of the same edge.
   [[nodiscard]] virtual std::optional<EdgePlace> tip_edge(int side, double s,
                                                           const std::optional<EdgePlace>& near = {}) const = 0;

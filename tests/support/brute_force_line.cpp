@@ -14,13 +14,13 @@ BrutePose blend(const BrutePose& a, const BrutePose& b, double w) {
 }  // namespace
 
 std::vector<Vec3> swept_flank(const BruteForceFaceGear& brute, double r_from, double r_to,
-                              const std::function<double(double)>& z_low, double z_high,
+                              const std::function<double(double)>& z_low, const std::function<double(double)>& z_high,
                               const std::function<double(double, double)>& azimuth, int columns, int rows) {
   std::vector<Vec3> out;
   for (int i = 0; i < columns; ++i)
     for (int j = 0; j < rows; ++j) {
       const double r = r_from + (r_to - r_from) * i / (columns - 1), low = z_low(r),
-                   z = low + (z_high - low) * j / (rows - 1);
+                   z = low + (z_high(r) - low) * j / (rows - 1);
       const auto residual = [&](double a) { return brute.least_clearance({r * std::cos(a), r * std::sin(a), z}); };
       double a = azimuth(r, z) - 1e-4, b = a + 2e-4, fa = residual(a), fb = residual(b);
       for (int k = 0; k < 30 && std::abs(fb) > 1e-11 && fb != fa;

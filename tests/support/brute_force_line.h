@@ -12,9 +12,10 @@
 namespace toothpath::test {
 
 /// Points of the flank whose azimuth at (r, z) is near `azimuth(r, z)`, on a grid: columns over the radii, rows from
-/// `z_low(r)` to z_high; all borders included. Each lies on the swept surface to 1e-10 mm.
+/// `z_low(r)` to `z_high(r)`; all borders included. Each lies on the swept surface to 1e-10 mm.
 [[nodiscard]] std::vector<Vec3> swept_flank(const BruteForceFaceGear& brute, double r_from, double r_to,
-                                            const std::function<double(double)>& z_low, double z_high,
+                                            const std::function<double(double)>& z_low,
+                                            const std::function<double(double)>& z_high,
                                             const std::function<double(double, double)>& azimuth, int columns,
                                             int rows);
 

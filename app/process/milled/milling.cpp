@@ -42,7 +42,7 @@ plan::Options plan_options(const proof::ProofLimits& limits, const machines::Mac
 void add_side_passes(const line::LinePlan& plan, int operation, std::vector<report::PassReport>& out) {
   for (const auto& pass : plan.passes) {
     report::SidePass side{pass.side, pass.strip, to_string(plan.rotaries), pass.left_mm, pass.contact_top_mm, {}};
-    for (const auto& s : pass.stations) side.stations.push_back({s.r, s.lean, s.tilt, s.misfit});
+    for (const auto& s : pass.stations) side.stations.push_back({s.at, s.lean, s.tilt, s.misfit});
     std::string name = fmt::format("flank {:+d}", pass.side);
     if (plan.strips > 1) name += fmt::format(", strip {}", pass.strip);
     const int number = (pass.side > 0 ? 0 : plan.strips) + pass.strip;

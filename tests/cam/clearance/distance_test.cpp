@@ -250,6 +250,16 @@ TEST(MeshDistance, KernelsAgreeBitForBit) {
     fast.frustum_to_triangles(tree.blocks[0], f, d);
     plain.frustum_to_triangles(tree.blocks[0], f, e);
     ASSERT_EQ(std::memcmp(d, e, sizeof d), 0);
+    const clearance::RayView ray{
+        {p.x(), p.y(), p.z()}, {axis.x(), axis.y(), axis.z()}, {1 / axis.x(), 1 / axis.y(), 1 / axis.z()}};
+    ASSERT_EQ(fast.ray_to_boxes(tree.nodes[0], ray), plain.ray_to_boxes(tree.nodes[0], ray));
+    for (const clearance::TriangleBlock& block : distance.tree().blocks()) {
+      const clearance::RayLanes by_fast = fast.ray_to_triangles(block, ray),
+                                by_plain = plain.ray_to_triangles(block, ray);
+      ASSERT_EQ(by_fast.through, by_plain.through);
+      ASSERT_EQ(by_fast.near_edge, by_plain.near_edge);
+      ASSERT_EQ(by_fast.edge_on, by_plain.edge_on);
+    }
   }
 }
 

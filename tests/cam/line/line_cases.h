@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <deque>
+#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -10,6 +12,10 @@
 #include "cam/line/pose.h"
 #include "cam/tool/profile.h"
 #include "geometry/base/angle.h"
+#include "geometry/face_gear/flank_foot.h"
+#include "geometry/face_gear/inverse.h"
+#include "geometry/face_gear/limits.h"
+#include "geometry/face_gear/part.h"
 #include "tests/support/sample_gears.h"
 
 namespace toothpath::test {
@@ -37,6 +43,71 @@ inline tool::CutterData tapered_mill(double diameter, double half_angle_deg, dou
   return d;
 }
 
+/// A gear as a part, kept as long as the tests run.
+inline const tooth_space::ToothedPart& kept(const face_gear::FaceGear& gear) {
+  static std::deque<std::shared_ptr<const tooth_space::ToothedPart>> parts;
+  return *parts.emplace_back(face_gear::part_of(gear));
+}
+
+/// A flank of a face gear as line milling asks for it, and its closed forms. Those speak of tooth 0; flank -1 of the
+/// task belongs to tooth 1.
+struct FaceFlank : line::FlankTask {
+  face_gear::FaceGearSurface<double> surface;
+  double z_tip = 0, z_end = 0, theta_end = 0;
+
+  FaceFlank(const face_gear::FaceGear& gear, int of_zone, int of_side)
+      : line::FlankTask(*line::flank_task(kept(gear), of_zone, of_side)),
+        surface(gear.rings()[std::size_t(of_zone)].surface),
+        z_tip(surface.z_tip(0.5 * (s_from + s_to))),
+        z_end(*face_gear::fillet_line_height(surface, side, 0.5 * (s_from + s_to))),
+        theta_end(surface.shaper.theta_t) {}
+  /// From the space to tooth 0 and back.
+  [[nodiscard]] Vec3 own(const Vec3& p) const { return side > 0 ? p : turned(p, -surface.pitch); }
+  [[nodiscard]] Vec3 spaced(const Vec3& p) const { return side > 0 ? p : turned(p, surface.pitch); }
+  [[nodiscard]] line::AxisLine<double> own(const line::AxisLine<double>& axis) const {
+    return {own(axis.c_0), own(axis.a)};
+  }
+  [[nodiscard]] line::Place place(double r, double z) const {
+    const auto at = face_gear::invert_flank(surface, side, r, z);
+    return {at->theta, at->B};
+  }
+};
+
+/// Shape operator of a flank by its closed forms, in the frame of tooth 0.
+template <typename S>
+line::TangentShape<S> closed_shape(const face_gear::FaceGearSurface<S>& f, int side,
+                                   const face_gear::FlankParameters<S>& at) {
+  const auto H = f.flank_shape(side, at.theta, at.B);
+  const auto b = f.flank_basis(side, at.theta, at.B);
+  const auto frame = line::tangent_frame<S>(side, f.flank(side, at.theta, at.B).n, Vec3T<S>(S(0), S(0), S(1)));
+  return {frame, b.e, b.l, Vec3T<S>(b.e * H.ee + b.l * H.el), Vec3T<S>(b.e * H.el + b.l * H.ll)};
+}
+template <typename S>
+std::optional<S> closed_lean(const face_gear::FaceGearSurface<S>& f, int side, const face_gear::FlankParameters<S>& at,
+                             const S& distance) {
+  return line::lean<S>(closed_shape<S>(f, side, at), distance);
+}
+
+/// d'' along an axis at height t, by the shape operator at the foot.
+inline double bend_along(const line::FlankTask& f, const line::AxisLine<double>& axis, double t,
+                         const line::Place& start) {
+  const auto foot = f.space->foot(f.piece(), axis.at(t), start.u, start.v);
+  const auto frame = f.frame(foot->at);
+  return line::distance_bend<double>(frame, line::shape_at(frame, foot->at), foot->distance, axis.a);
+}
+/// d''' there, by fourth-order differences. 1/mm^2
+inline double third_along(const line::FlankTask& f, const line::AxisLine<double>& axis, double t,
+                          const line::Place& start) {
+  const double h = 0.02 * f.module_mm;
+  const auto rise = [&](double x) { return bend_along(f, axis, t + x, start) - bend_along(f, axis, t - x, start); };
+  return (8 * rise(h) - rise(2 * h)) / (12 * h);
+}
+/// What the best pose leaves of a gap with this third derivative over a line of half length h along the axis: the
+/// Chebyshev polynomial T_3 stood on zero. mm
+inline double left_estimate(double third, double half_length) {
+  return std::abs(third) * half_length * half_length * half_length / 12;
+}
+
 /// One flank of one gear and the ball radius of its mill, 5 deg; then what the independent study found, um: misfit of
 /// the best poses, left and gouge of the swept pass.
 struct LineCase {
@@ -46,7 +117,7 @@ struct LineCase {
   double r_0 = 0;
   double best = 0, left = 0, gouge = 0;
 
-  [[nodiscard]] line::FlankTask task() const { return *line::flank_task(made(gear), zone, side); }
+  [[nodiscard]] FaceFlank task() const { return {made(gear), zone, side}; }
 };
 inline std::ostream& operator<<(std::ostream& out, const LineCase& c) { return out << c.name; }
 

@@ -25,8 +25,8 @@ using namespace line;
 line::PassOptions options_of(const LineCase& c, line::Rotaries rotaries = line::Rotaries::both) {
   line::PassOptions o;
   o.rotaries = rotaries;
-  o.lift_inner = c.zone > 0;
-  o.lift_outer = c.zone + 1 < int(c.gear.zones.size());
+  o.lift_from = c.zone > 0;
+  o.lift_to = c.zone + 1 < int(c.gear.zones.size());
   o.chord_mm = 5e-4 * std::max(1.0, c.gear.module_mm / 2);
   return o;
 }
@@ -38,9 +38,12 @@ line::LinePass pass_of(const LineCase& c, const line::PassOptions& o) {
   return *pass;
 }
 
-std::vector<BrutePose> way_of(const line::LinePass& pass, double r_0) {
+/// Past tooth 0.
+std::vector<BrutePose> way_of(const line::LinePass& pass, const LineCase& c) {
+  const double turn = pass.side > 0 ? 0 : -2 * kPi / c.gear.teeth;
   std::vector<BrutePose> way;
-  for (const auto& r : pass.records) way.push_back({r.axis.c_0 - r_0 * r.axis.a, r.axis.a});
+  for (const auto& r : pass.records)
+    way.push_back({turned(r.axis.c_0 - c.r_0 * r.axis.a, turn), turned(r.axis.a, turn)});
   return way;
 }
 
@@ -48,8 +51,9 @@ std::vector<Vec3> points_between(const LineCase& c, double r_from, double r_to, 
   const auto f = c.task();
   const BruteForceFaceGear brute(c.gear, c.gear.zones[std::size_t(c.zone)].helix_angle_rad);
   return swept_flank(
-      brute, std::max(r_from, f.inner_radius), std::min(r_to, f.outer_radius),
-      [&](double r) { return *face_gear::fillet_line_height(f.surface, c.side, r); }, f.z_tip,
+      brute, std::max(r_from, f.s_from), std::min(r_to, f.s_to),
+      [&](double r) { return *face_gear::fillet_line_height(f.surface, c.side, r); },
+      [&](double r) { return f.surface.z_tip(r); },
       [&](double r, double z) {
         return face_gear::flank_azimuth(f.surface, c.side, *face_gear::invert_flank(f.surface, c.side, r, z));
       },
@@ -72,7 +76,7 @@ class LinePasses : public testing::TestWithParam<LineCase> {};
 TEST_P(LinePasses, SweptFlank) {
   const auto& c = GetParam();
   const auto pass = pass_of(c, options_of(c));
-  const auto result = swept(flank_points(c), mill_of(c), way_of(pass, c.r_0));
+  const auto result = swept(flank_points(c), mill_of(c), way_of(pass, c));
   std::printf(
       "%-18s left %.3f um (study %.2f), gouge %.3f um (study %.2f); planned %.3f + chord %.3f um, %zu records\n",
       c.name.c_str(), 1e3 * result.left, c.left, 1e3 * result.gouge, c.gouge, 1e3 * pass.misfit_mm, 1e3 * pass.chord_mm,
@@ -91,7 +95,7 @@ TEST_P(LinePasses, BiasIsKept) {
   o.chord_mm = 1e-4;
   o.bias_mm = 5e-4;
   const auto pass = pass_of(c, o);
-  const auto result = swept(flank_points(c), mill_of(c), way_of(pass, c.r_0));
+  const auto result = swept(flank_points(c), mill_of(c), way_of(pass, c));
   EXPECT_LT(1e3 * result.gouge, -0.45);
   EXPECT_GT(1e3 * result.gouge, -0.53);
 }
@@ -109,14 +113,14 @@ class Planted : public testing::TestWithParam<const char*> {
  protected:
   const LineCase& c = case_of(GetParam());
   line::LinePass pass = pass_of(c, options_of(c));
-  std::vector<BrutePose> way = way_of(pass, c.r_0);
-  line::FlankTask task = c.task();
+  std::vector<BrutePose> way = way_of(pass, c);
+  FaceFlank task = c.task();
   BruteSwept measured(const BruteConicalMill& mill) const { return swept(flank_points(c), mill, way); }
   /// Out of the material at the anchor of a record.
   [[nodiscard]] Vec3 normal(std::size_t k) const {
     const Vec3& p = pass.records[k].anchor;
-    const auto at = face_gear::invert_flank(task.surface, c.side, p.head<2>().norm(), p.z());
-    return task.surface.flank(c.side, at->theta, at->B).n;
+    const auto at = task.place(p.head<2>().norm(), p.z());
+    return task.surface.flank(c.side, at.u, at.v).n;
   }
   static constexpr double kFault = 2e-3;
 };
@@ -140,7 +144,7 @@ TEST_P(Planted, OneRecord) {
   Random random(11);
   for (int run = 0; run < 4; ++run) {
     const std::size_t k = way.size() / 4 + random.index(way.size() / 2);
-    const double r = pass.records[k].r, reach = 0.1 * c.gear.module_mm;
+    const double r = pass.records[k].s, reach = 0.1 * c.gear.module_mm;
     // The fault is two blocks wide: seen on a grid that is fine enough for it.
     const auto points = points_between(c, r - reach, r + reach, 15, 9);
     const double clean = swept(points, mill_of(c), way).gouge;
@@ -200,7 +204,7 @@ TEST(LinePassRoom, NothingElseIsCut) {
     const auto& c = case_of(name);
     const auto gear = made(c.gear);
     const auto pass = pass_of(c, options_of(c));
-    const auto way = way_of(pass, c.r_0);
+    const auto way = way_of(pass, c);
     const BruteForceBodies bodies(gear, 12, 12);
     const double tau = radians(5), low = c.r_0 * (1 - std::sin(tau)), r_low = c.r_0 * std::cos(tau), top = 22;
     const BruteBody ball{c.r_0, c.r_0, c.r_0, c.r_0, true},
@@ -230,7 +234,7 @@ TEST(LinePassRotaries, TheTiltStands) {
     const auto pass = pass_of(c, options_of(c, line::Rotaries::tilt_stands));
     for (const auto& r : pass.records) EXPECT_NEAR(r.axis.a.z(), pass.records.front().axis.a.z(), 1e-12);
     EXPECT_LT(1e3 * pass.best_mm, 1.1 * best) << name;
-    const auto result = swept(flank_points(c), mill_of(c), way_of(pass, c.r_0));
+    const auto result = swept(flank_points(c), mill_of(c), way_of(pass, c));
     std::printf("%-12s tilt stands: poses %.3f um, swept left %.3f, gouge %.3f um\n", name.c_str(), 1e3 * pass.best_mm,
                 1e3 * result.left, 1e3 * result.gouge);
     EXPECT_LT(result.left, pass.misfit_mm + pass.chord_mm + 1e-4);
@@ -255,8 +259,8 @@ TEST(LinePassShape, ContactGoesOnSteadilyAndLiftsAreGradual) {
       const double way = (b.anchor - a.anchor).norm(),
                    tip = (b.axis.c_0 - c.r_0 * b.axis.a - a.axis.c_0 + c.r_0 * a.axis.a).norm();
       contact += way;
-      EXPECT_GT(b.r, a.r);
-      EXPECT_LE(b.r - a.r, 0.1001 * c.gear.module_mm);
+      EXPECT_GT(b.s, a.s);
+      EXPECT_LE(b.s - a.s, 0.1001 * c.gear.module_mm);
       EXPECT_NEAR(b.contact_ratio, tip / way, 1e-9);
       EXPECT_LE(std::abs(b.lift - a.lift), 1.05 * way + 1e-9);
     }
@@ -265,9 +269,8 @@ TEST(LinePassShape, ContactGoesOnSteadilyAndLiftsAreGradual) {
     const auto task = c.task();
     const line::LineFit fit(task, tapered(c.r_0), line::strips_of(task, 1)[0]);
     for (const auto* r : {&pass.records.front(), &pass.records.back()}) {
-      const auto at = face_gear::invert_flank(task.surface, c.side, r->anchor.head<2>().norm(), r->anchor.z());
-      const auto gap = fit.gap_along(r->axis, 0.5 * pass.contact_top_mm,
-                                     {line::theta_at_distance(task.surface, at->theta, c.r_0), at->B});
+      const auto gap =
+          fit.gap_along(r->axis, 0.5 * pass.contact_top_mm, task.place(r->anchor.head<2>().norm(), r->anchor.z()));
       ASSERT_TRUE(gap);
       EXPECT_GT(gap->beyond_ring, 0.1 * c.gear.module_mm);
     }
@@ -284,7 +287,7 @@ TEST(LinePassShape, EndsWhereItIsNotClear) {
     return axis.c_0.head<2>().norm() < limit ? std::nullopt : std::optional(line::Blocked{"flute", "tip", -1, 0});
   };
   const auto cut = pass_of(c, o);
-  EXPECT_LT(cut.records.back().r, whole.records.back().r - 0.1);
+  EXPECT_LT(cut.records.back().s, whole.records.back().s - 0.1);
   EXPECT_GT(cut.shortened_mm, 0);
   EXPECT_EQ(whole.shortened_mm, 0);
 }
@@ -308,7 +311,7 @@ TEST(LinePlans, PathOfTheQuarterGear) {
   const auto tool = mill(0.5, 5, 4, 4, 22);
   auto o = finishing();
   o.left_mm = 0.002;
-  const auto plan = line::plan_line_milling(gear, tool, o);
+  const auto plan = line::plan_line_milling(kept(gear), tool, o);
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_EQ(plan->strips, 1);
   EXPECT_EQ(plan->rotaries, line::Rotaries::both);  // the inner flank -1 leaves more than 2 um with the tilt standing
@@ -327,7 +330,6 @@ TEST(LinePlans, PathOfTheQuarterGear) {
     ASSERT_NE(found, plan->passes.end());
     const line::LinePass& pass = *found;
     EXPECT_TRUE(seen.insert({records[k].zone, records[k].pass}).second) << "cut twice";
-    const double turn = pass.side > 0 ? 0 : gear.pitch();
     ASSERT_EQ(records[k].kind, path::MoveKind::rapid);
     ASSERT_EQ(records[k + 1].kind, path::MoveKind::engage);
     EXPECT_GE(records[k].tip.z(), -15);
@@ -336,7 +338,7 @@ TEST(LinePlans, PathOfTheQuarterGear) {
     ++rapids, ++engages;
     const std::size_t first = k + 1, count = pass.records.size();
     EXPECT_EQ(records[first].zone, pass.zone);
-    const bool forwards = (turned(pass.records.front().axis.a, turn) - records[first].axis).norm() < 1e-12;
+    const bool forwards = (pass.records.front().axis.a - records[first].axis).norm() < 1e-12;
     double minutes = 0, contact = 0;
     for (std::size_t n = 1; n < count; ++n) {
       const auto& r = records[first + n];
@@ -345,7 +347,7 @@ TEST(LinePlans, PathOfTheQuarterGear) {
       const auto& a = pass.records[forwards ? n : count - 1 - n];
       const auto& b = pass.records[forwards ? n - 1 : count - n];
       contact += (a.anchor - b.anchor).norm();
-      EXPECT_LE((turned(a.axis.c_0 - 0.25 * a.axis.a, turn) - r.tip).norm(), 1e-12);
+      EXPECT_LE((a.axis.c_0 - 0.25 * a.axis.a - r.tip).norm(), 1e-12);
     }
     EXPECT_NEAR(contact / minutes, 300, 1e-6);
     k = first + count;
@@ -363,7 +365,7 @@ TEST(LinePlans, ClimbMilling) {
   for (const bool climb : {true, false}) {
     auto o = finishing();
     o.climb = climb;
-    const auto plan = line::plan_line_milling(gear, tool, o);
+    const auto plan = line::plan_line_milling(kept(gear), tool, o);
     ASSERT_TRUE(plan) << plan.error().message;
     for (std::size_t k = 2; k + 1 < plan->path.records.size(); ++k) {
       const auto &a = plan->path.records[k - 1], &b = plan->path.records[k];
@@ -381,23 +383,16 @@ TEST(LinePlans, AllowanceStandsParallel) {
   const auto gear = made(quarter_dhfg());
   const auto tool = mill(0.5, 5, 4, 4, 22);
   auto o = finishing();
-  const auto clean = line::plan_line_milling(gear, tool, o);
+  const auto clean = line::plan_line_milling(kept(gear), tool, o);
   o.allowance_mm = 0.05;
-  const auto stock = line::plan_line_milling(gear, tool, o);
+  const auto stock = line::plan_line_milling(kept(gear), tool, o);
   ASSERT_TRUE(clean && stock);
   for (const char* name : {"inner_plus", "outer_minus"}) {
     const auto& c = case_of(name);
     for (std::size_t k = 0; k < 4; ++k) {
       if (clean->passes[k].zone != c.zone || clean->passes[k].side != c.side) continue;
-      auto way = way_of(clean->passes[k], c.r_0);
-      const auto without = swept(flank_points(c), mill_of(c), way);
-      for (auto& p : way) {
-        const auto turned = line::with_allowance(c.task(), {p.tip, p.axis}, 0.05);
-        p = {turned.c_0, turned.a};
-      }
-      const auto with = swept(flank_points(c), mill_of(c), way);
-      // Exact along every line (pose_test); at the corners, which no foot meets exactly, the larger distance bends a
-      // little.
+      const auto without = swept(flank_points(c), mill_of(c), way_of(clean->passes[k], c));
+      const auto with = swept(flank_points(c), mill_of(c), way_of(stock->passes[k], c));
       EXPECT_NEAR(with.left - without.left, 0.05, 1e-4);
       EXPECT_NEAR(without.gouge - with.gouge, 0.05, 1e-4);
     }
@@ -409,18 +404,18 @@ TEST(LinePlans, ChoosesFewestRotariesThenFewestStrips) {
   const auto tool = mill(0.5, 5, 4, 4, 22);
   auto o = finishing();
   o.left_mm = 0.008;
-  const auto loose = line::plan_line_milling(gear, tool, o);
+  const auto loose = line::plan_line_milling(kept(gear), tool, o);
   ASSERT_TRUE(loose) << loose.error().message;
   EXPECT_EQ(loose->rotaries, line::Rotaries::tilt_stands);
   EXPECT_EQ(loose->strips, 1);
   o.left_mm = 0.0011;
-  const auto tight = line::plan_line_milling(gear, tool, o);
+  const auto tight = line::plan_line_milling(kept(gear), tool, o);
   ASSERT_TRUE(tight) << tight.error().message;
   EXPECT_EQ(tight->strips, 2);
   EXPECT_LE(tight->misfit_mm, 0.0011);
   o.left_mm = 1e-6;
   o.strips = 1;
-  const auto none = line::plan_line_milling(gear, tool, o);
+  const auto none = line::plan_line_milling(kept(gear), tool, o);
   ASSERT_FALSE(none);
   EXPECT_NE(none.error().message.find("left = 0.001 um cannot be met"), std::string::npos) << none.error().message;
 }
@@ -431,19 +426,18 @@ TEST(LinePlans, Refusals) {
     ASSERT_FALSE(plan) << text;
     EXPECT_NE(plan.error().message.find(text), std::string::npos) << plan.error().message;
   };
-  refused(line::plan_line_milling(gear, mill(0.5, 5, 2.5, 4, 22), finishing()), "flute_length must be");
+  refused(line::plan_line_milling(kept(gear), mill(0.5, 5, 2.5, 4, 22), finishing()), "flute_length must be");
   tool::CutterData flat;
   flat.shape = tool::CutterShape::flat;
   flat.diameter_mm = 1;
   flat.flute_length_mm = 4;
   flat.shank_diameter_mm = 4;
   flat.stick_out_mm = flat.length_mm = 20;
-  refused(line::plan_line_milling(gear, std::get<tool::Profile>(tool::Profile::make(flat)), finishing()),
+  refused(line::plan_line_milling(kept(gear), std::get<tool::Profile>(tool::Profile::make(flat)), finishing()),
           "needs a tool with a ball end");
   auto o = finishing();
   o.strips = 9;
-  refused(line::plan_line_milling(gear, mill(0.5, 5, 4, 4, 22), o), "strips = 9 lies outside 1 .. 4");
-  refused(line::plan_line_milling(made(conical_gear()), mill(0.5, 5, 4, 4, 22), finishing()), "shaft_angle");
+  refused(line::plan_line_milling(kept(gear), mill(0.5, 5, 4, 4, 22), o), "strips = 9 lies outside 1 .. 4");
 }
 
 // The same bits with one thread and with several; the time is printed, for busy machines cannot promise it.
@@ -454,10 +448,10 @@ TEST(LinePlans, SameAnswerWithOneThread) {
   o.clearance_height_mm = -60;
   o.rotaries = {line::Rotaries::both};
   const auto start = std::chrono::steady_clock::now();
-  const auto a = line::plan_line_milling(gear, tool, o);
+  const auto a = line::plan_line_milling(kept(gear), tool, o);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const auto b = line::plan_line_milling(gear, tool, o);
+  const auto b = line::plan_line_milling(kept(gear), tool, o);
   ASSERT_TRUE(a && b);
   std::printf("paper's gear planned in %.2f s, %zu records\n", seconds, a->path.records.size());
   ASSERT_EQ(a->path.records.size(), b->path.records.size());

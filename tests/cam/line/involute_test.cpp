@@ -1,0 +1,195 @@
+// Line milling of flanks that are no saddles: an involute is straight along its generators, which run along the tooth.
+// A mill laid along one touches it exactly, spur or helical; a tool that stands upright in the space cuts it in strips.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "cam/line/plan.h"
+#include "geometry/base/angle.h"
+#include "geometry/cylindrical/part.h"
+#include "tests/cam/line/line_cases.h"
+#include "tests/geometry/cylindrical/samples.h"
+#include "tests/support/brute_force_line.h"
+#include "tests/support/random.h"
+
+namespace toothpath::test {
+namespace {
+
+using tooth_space::ToothedPart;
+
+std::shared_ptr<const ToothedPart> part_of(const cylindrical::CylindricalParameters& gear) {
+  return cylindrical::part_of(made(gear));
+}
+
+struct InvoluteCase {
+  const char* name;
+  std::shared_ptr<const ToothedPart> part;
+};
+const std::vector<InvoluteCase>& involute_cases() {
+  static const std::vector<InvoluteCase> cases = {{"spur", part_of(shifted_spur())},
+                                                  {"left_helical", part_of(left_helical())},
+                                                  {"pinion", part_of(double_helical_pinion())}};
+  return cases;
+}
+
+/// Least distance from x to places of a flank, by a pattern search over its parameters: no normals, no derivatives.
+double nearest(const line::FlankTask& f, const Vec3& x, double u, double v) {
+  const auto off = [&](double a, double b) { return (f.space->point(f.piece(), a, b)->p - x).norm(); };
+  double best = off(u, v);
+  for (double step = 0.05; step > 1e-11;) {
+    bool moved = false;
+    for (const auto& [du, dv] : {std::pair{1.0, 0.0},
+                                 {-1.0, 0.0},
+                                 {0.0, 1.0},
+                                 {0.0, -1.0},
+                                 {1.0, 1.0},
+                                 {-1.0, -1.0},
+                                 {1.0, -1.0},
+                                 {-1.0, 1.0}})
+      if (const double d = off(u + du * step / f.module_mm, v + dv * step); d < best) {
+        best = d;
+        u += du * step / f.module_mm;
+        v += dv * step;
+        moved = true;
+      }
+    if (!moved) step *= 0.5;
+  }
+  return best;
+}
+
+// The wanted axis lies along the generator, the gear axis projected on the tangent plane, whichever sign rounding gives
+// to K. There a cylinder and a cone touch along a whole line, far beyond the ring.
+TEST(Involute, MillsLieAlongTheGenerator) {
+  Random random(12);
+  double off = 0, gap = 0, bend = 0;
+  for (const auto& c : involute_cases())
+    for (int zone = 0; zone < c.part->zones(); ++zone)
+      for (const int side : {1, -1}) {
+        const auto f = *line::flank_task(*c.part, zone, side);
+        for (int k = 0; k < 60; ++k) {
+          const auto place = f.at_depth(random(f.s_from, f.s_to), random(0, f.depth));
+          ASSERT_TRUE(place);
+          const auto& on = place->on;
+          const auto frame = f.frame(on);
+          const auto shape = line::shape_at(frame, on);
+          const double r_0 = random(0.3, 2);
+          const auto psi = line::lean<double>(shape, r_0);
+          ASSERT_TRUE(psi) << c.name;
+          const Vec3 u = line::axis_direction<double>(frame, *psi, 0);
+          const Vec3 generator = (Vec3::UnitZ() - on.n.z() * on.n).normalized();
+          off = std::max(off, u.cross(generator).norm());
+          bend = std::max(bend, std::abs(line::distance_bend<double>(frame, shape, r_0, u)));
+          for (const double half_angle : {0.0, 7.0}) {
+            const auto law = tapered(r_0, half_angle);
+            const line::LineFit fit(f, law, line::strips_of(f, 1)[0]);
+            const auto axis = line::axis_of<double>(on.p, frame, law, {*psi, 0, 0, 2.0});
+            for (double t = 0; t <= 12; t += 3) {
+              const auto q = fit.gap_at(axis, t, place->at);
+              ASSERT_TRUE(q) << c.name;
+              gap = std::max(gap, std::abs(q->e));
+              if (k % 20 == 0) { EXPECT_NEAR(nearest(f, axis.at(t), q->at.u, q->at.v), law.rho(t), 1e-8) << c.name; }
+            }
+          }
+        }
+      }
+  std::printf("lean off the generator %.1e rad, gap along it %.1e mm, second derivative %.1e /mm\n", off, gap, bend);
+  EXPECT_LT(off, 1e-7);
+  EXPECT_LT(gap, 1e-11);
+  EXPECT_LT(bend, 1e-12);
+}
+
+// A generator lies flat in the space, so that passes are of an upright tool: one strip of height h leaves k h^2 / 8 of
+// an involute that bends by k along its profile. Against places of the flank, looked at densely.
+TEST(Involute, UprightStripsLeaveTheSagOfTheProfile) {
+  for (const auto& c : involute_cases()) {
+    const auto f = *line::flank_task(*c.part, 0, 1);
+    for (const int strips : {1, 2, 4, 8}) {
+      double worst = 0, sag = 0;
+      for (const auto& strip : line::strips_of(f, strips)) {
+        const line::LineFit fit(f, tapered(0.15 * f.module_mm), strip);
+        const auto p = fit.best(0.5 * (f.s_from + f.s_to));
+        ASSERT_TRUE(p) << c.name;
+        EXPECT_LT(p->from_upright(), line::kMostTilt);
+        worst = std::max(worst, p->gap.misfit());
+        const auto on = f.at_depth(p->s, 0.5 * (strip.top + strip.bottom.value_or(f.depth)));
+        const auto shape = line::shape_at(f.frame(on->on), on->on);
+        const double height = f.depth / strips / f.frame(on->on).p.dot(f.up(on->on.p));
+        sag = std::max(sag, shape.along(std::cos(p->angles.psi), std::sin(p->angles.psi)) * height * height / 8 /
+                                std::pow(std::cos(p->angles.psi), 2));
+        double least = INFINITY;
+        for (int k = 0; k <= 40; ++k) {
+          const double t = p->gap.t_to * k / 40;
+          const auto q = fit.gap_at(p->axis, t, p->at);
+          ASSERT_TRUE(q);
+          if (k % 8 == 0) { EXPECT_NEAR(nearest(f, p->axis.at(t), q->at.u, q->at.v) - fit.law().rho(t), q->e, 1e-8); }
+          if (t >= p->gap.t_from) least = std::min(least, q->e);
+        }
+        EXPECT_GT(least, -2e-9 - 0.01 * p->gap.misfit());
+      }
+      std::printf("%-12s %d strips: misfit %.2f um, sag of the profile %.2f um\n", c.name, strips, 1e3 * worst,
+                  1e3 * sag);
+      EXPECT_NEAR(worst, sag, 0.2 * sag) << c.name << " " << strips;
+    }
+  }
+}
+
+// A whole operation on a spur and a helical gear, in as many strips as `left` asks for, as the moving mill leaves them.
+TEST(Involute, PassesByBruteForce) {
+  auto spur = shifted_spur(), helical = left_helical();
+  spur.zones = {{0, -2, 2}};
+  helical.zones = {{radians(-18), 4, 7}};
+  for (const auto& [gear, left_mm, strips] : {std::tuple(spur, 0.0305, 4), {spur, 0.009, 8}, {helical, 0.01, 4}}) {
+    const auto part = part_of(gear);
+    const double m = gear.module_mm;
+    line::LineOperation o;
+    o.speed_rpm = 16000;
+    o.feed_mm_min = 400;
+    o.left_mm = left_mm;
+    o.rotaries = {line::Rotaries::both};
+    o.clearance_height_mm = part->blank_top() + 1;
+    o.chord_tolerance_mm = 1e-3;
+    const auto tool = std::get<tool::Profile>(tool::Profile::make(tapered_mill(0.3 * m, 5, 4 * m, 6, 30)));
+    const auto plan = line::plan_line_milling(*part, tool, o);
+    ASSERT_TRUE(plan) << plan.error().message;
+    EXPECT_EQ(plan->strips, strips);
+    EXPECT_LE(plan->misfit_mm, left_mm);
+    ASSERT_EQ(int(plan->passes.size()), 2 * strips);
+    for (const auto& r : plan->path.records)
+      if (r.kind == path::MoveKind::rapid) { EXPECT_GE(radius(r.tip), part->blank_top()); }
+    for (const int side : {1, -1}) {
+      const auto f = *line::flank_task(*part, 0, side);
+      std::vector<Vec3> points;
+      for (int i = 0; i <= 12; ++i)
+        for (int j = 0; j <= 24; ++j)
+          points.push_back(f.at_depth(f.s_from + (f.s_to - f.s_from) * i / 12, f.depth * j / 24)->on.p);
+      double chord = 0, gouge = -INFINITY;
+      std::vector<double> least(points.size(), INFINITY);
+      for (const auto& pass : plan->passes) {
+        if (pass.side != side) continue;
+        std::vector<BrutePose> way;
+        for (const auto& r : pass.records) way.push_back({r.axis.c_0 - 0.15 * m * r.axis.a, r.axis.a});
+        for (std::size_t k = 0; k < points.size(); ++k)
+          least[k] = std::min(least[k], least_distance(points[k], {0.15 * m, radians(5), 0, 0}, way));
+        chord = std::max(chord, pass.chord_mm);
+      }
+      double left = -INFINITY;
+      for (const double d : least) {
+        left = std::max(left, d);
+        gouge = std::max(gouge, -d);
+      }
+      std::printf("z %d, %d strips, side %+d: swept left %.2f um, gouge %.3f um, planned %.2f um\n", gear.teeth, strips,
+                  side, 1e3 * left, 1e3 * gouge, 1e3 * plan->misfit_mm);
+      EXPECT_LT(left, plan->misfit_mm + chord + o.bias_mm + 1e-4);
+      EXPECT_LT(gouge, -o.bias_mm + 0.25 * chord + 5e-5);
+    }
+    o.left_mm = 2e-5;
+    const auto none = line::plan_line_milling(*part, tool, o);
+    ASSERT_FALSE(none);
+    EXPECT_NE(none.error().message.find("left = 0.020 um asks for "), std::string::npos) << none.error().message;
+    EXPECT_NE(none.error().message.find("at most 24 are planned"), std::string::npos) << none.error().message;
+  }
+}
+
+}  // namespace
+}  // namespace toothpath::test
