@@ -19,7 +19,6 @@ class FacePart final : public tooth_space::ToothedPart {
     for (const auto& ring : gear_.rings()) spaces_.push_back(std::make_unique<SpaceSheet>(gear_.parameters(), ring));
   }
 
-  [[nodiscard]] const FaceGear& gear() const { return gear_; }
   [[nodiscard]] int teeth() const override { return gear_.parameters().teeth; }
   [[nodiscard]] int zones() const override { return int(spaces_.size()); }
   [[nodiscard]] const SpaceSheet& space(int zone) const override { return *spaces_[std::size_t(zone)]; }
@@ -90,8 +89,6 @@ std::optional<tooth_space::ToothedPart::OtherBegin> FacePart::begun_later(int zo
 }
 
 }  // namespace
-
-const FaceGear& gear_of(const tooth_space::ToothedPart& part) { return dynamic_cast<const FacePart&>(part).gear(); }
 
 std::shared_ptr<const tooth_space::ToothedPart> part_of(const FaceGear& gear) {
   return std::make_shared<FacePart>(gear);

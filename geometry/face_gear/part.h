@@ -9,8 +9,6 @@
 
 namespace toothpath::face_gear {
 
-/// The face gear of such a part; the part is one.
-[[nodiscard]] const FaceGear& gear_of(const tooth_space::ToothedPart& part);
 /// Corrections of the gear included; the gear is copied.
 [[nodiscard]] std::shared_ptr<const tooth_space::ToothedPart> part_of(const FaceGear& gear);
 
