@@ -6,12 +6,10 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
-#include "geometry/tooth_space/curvature.h"
+#include "geometry/tooth_space/limits.h"
 
 namespace toothpath::cylindrical {
 namespace {
-
-using tooth_space::Piece;
 
 constexpr int kLeastTeeth = 5, kMostTeeth = 2000;
 constexpr double kSameRadius = 1e-9;      // of the reference radius, between two zones
@@ -149,21 +147,6 @@ class Inspection {
   const CylindricalParameters& gear_;
 };
 
-/// Least distance from a place to the flank and fillet of the minus side, less `radius`.
-double room(const InvoluteSpace& space, const Vec3& centre, double radius) {
-  constexpr int kStarts = 9;
-  double least = INFINITY;
-  for (const Piece piece : {Piece::fillet_minus, Piece::flank_minus}) {
-    tooth_space::Borders b = space.borders(piece);
-    if (is_flank(piece)) b.to = space.kernel().theta_a;
-    for (int k = 0; k < kStarts; ++k) {
-      const auto foot = space.foot(piece, centre, b.from + (b.to - b.from) * k / (kStarts - 1), centre.z());
-      if (foot && b.hold(foot->u, 1e-9)) least = std::min(least, foot->distance - radius);
-    }
-  }
-  return least;
-}
-
 }  // namespace
 
 double least_profile_shift(const CylindricalParameters& gear, const CylindricalZone& zone) {
@@ -215,38 +198,13 @@ Expected<CylindricalGear, std::vector<Refusal>> CylindricalGear::make(const Cyli
 }
 
 CylindricalLimits limits_of(const InvoluteSpace& space) {
-  constexpr int kPlaces = 65, kHalvings = 60, kDoublings = 10;
   const auto& w = space.kernel();
-  const double z = 0.5 * (w.z_from + w.z_to);
+  const tooth_space::SpaceLimits limits = tooth_space::limits_at(space, -0.5 * (w.z_from + w.z_to), -1);
   CylindricalLimits out;
   out.form_diameter_mm = 2 * w.r_b * std::sqrt(1 + w.theta_f * w.theta_f);
   out.top_land_mm = 2 * w.r_a * (kPi / w.teeth - w.eta(w.theta_a));
-  // The curvature of the fillet grows towards the root or has one top on the way: the best of a grid, closed in on.
-  const auto hollow = [&](double u) {
-    const auto q = space.at(Piece::fillet_minus, u, z);
-    return q ? -tooth_space::principal_curvatures(*q).least : 0.0;
-  };
-  const tooth_space::Borders b = space.borders(Piece::fillet_minus);
-  const auto place = [&](int k) { return b.from + (b.to - b.from) * std::clamp(k, 0, kPlaces - 1) / (kPlaces - 1); };
-  int best = 0;
-  for (int k = 1; k < kPlaces; ++k)
-    if (hollow(place(k)) > hollow(place(best))) best = k;
-  double low = place(best - 1), high = place(best + 1);
-  for (int k = 0; k < kHalvings; ++k) {
-    const double a = low + (high - low) / 3, c = high - (high - low) / 3;
-    (hollow(a) < hollow(c) ? low : high) = hollow(a) < hollow(c) ? a : c;
-  }
-  out.fillet_radius_min_mm = 1 / std::max(hollow(0.5 * (low + high)), hollow(place(best)));
-  // The ball stands on the middle of the root.
-  const Vec3 outwards = turned(Vec3::UnitX(), w.kappa * z);
-  const auto fits = [&](double R) { return room(space, (w.r_f + R) * outwards + z * Vec3::UnitZ(), R) >= 0; };
-  double fit = 0, stuck = w.r_a - w.r_f;
-  for (int k = 0; k < kDoublings && fits(stuck); ++k) stuck *= 2;
-  for (int k = 0; k < kHalvings; ++k) {
-    const double middle = 0.5 * (fit + stuck);
-    (fits(middle) ? fit : stuck) = middle;
-  }
-  out.root_ball_radius_mm = fit;
+  out.fillet_radius_min_mm = limits.fillet_radius_min_mm;
+  out.root_ball_radius_mm = limits.root_ball_radius_mm;
   const double half_way = w.theta_at(0.5 * (0.5 * out.form_diameter_mm + w.r_a));
   out.mid_flank_radius_mm = w.r_b * half_way / w.cos_bb;
   return out;

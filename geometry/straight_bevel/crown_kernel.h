@@ -1,11 +1,11 @@
-// The tooth space of a straight bevel gear, as the crown gear with rounded tooth tips cuts it: flank, fillet and root in
-// closed form, for any scalar. All three are cones over a curve on the unit sphere, apex in the pitch apex.
+// The tooth space of a straight bevel gear, as the crown gear with rounded tooth tips cuts it: flank, fillet and root
+// in closed form, for any scalar. All three are cones over a curve on the unit sphere, apex in the pitch apex.
 // docs/straight_bevel_gear.md
 //
 // Crown frame: A along the pitch line, B across it, H out of the pitch cone. Octoid flank: u is the angle a of the
-// crown's flank plane, psi plus the turn of the crown. Spherical involute: u is the rolling angle tau from the base cone.
-// Fillet: u is the longitude b of the rounding's centre, 0 at the root. Root: the share of its width from the plus to
-// the minus edge. v = -R, R the distance from the apex.
+// crown's flank plane, psi plus the turn of the crown. Spherical involute: u is the rolling angle tau from the base
+// cone. Fillet: u is the longitude b of the rounding's centre, 0 at the root. Root: the share of its width from the
+// plus to the minus edge. v = -R, R the distance from the apex.
 #pragma once
 
 #include <algorithm>
@@ -24,19 +24,19 @@ struct CrownKernel {
 
   int teeth = 0;
   Form form = Form::octoid;
-  C sin_d{}, cos_d{};      ///< of the pitch angle
-  C sin_a{}, cos_a{};      ///< of the pressure angle
-  C R_e{}, R_i{};          ///< outer and inner cone distance
-  C theta_f{};             ///< dedendum angle
-  C eta{};                 ///< half angle of the rounding's cone
-  C psi{};                 ///< half angle of the crown's tooth in the pitch plane
-  C eps{}, chi{};          ///< elevation and longitude of the rounding's centre, crown unturned
-  C b_F{};                 ///< u of the fillet where it joins the flank
-  C u_F{};                 ///< u of the flank there
-  C cos_db{}, sin_db{};    ///< of the base angle; spherical involute
-  C az_0{};                ///< azimuth of that involute's start on the base cone
-  C psi_f{};               ///< half angle of the root
-  C h_a{}, tip_slope{};    ///< tip surface: h at the large end, and its slope along s
+  C sin_d{}, cos_d{};    ///< of the pitch angle
+  C sin_a{}, cos_a{};    ///< of the pressure angle
+  C R_e{}, R_i{};        ///< outer and inner cone distance
+  C theta_f{};           ///< dedendum angle
+  C eta{};               ///< half angle of the rounding's cone
+  C psi{};               ///< half angle of the crown's tooth in the pitch plane
+  C eps{}, chi{};        ///< elevation and longitude of the rounding's centre, crown unturned
+  C b_F{};               ///< u of the fillet where it joins the flank
+  C u_F{};               ///< u of the flank there
+  C cos_db{}, sin_db{};  ///< of the base angle; spherical involute
+  C az_0{};              ///< azimuth of that involute's start on the base cone
+  C psi_f{};             ///< half angle of the root
+  C h_a{}, tip_slope{};  ///< tip surface: h at the large end, and its slope along s
 
   explicit CrownKernel(const StraightBevelParameters& g) : teeth(g.teeth), form(g.form) {
     using std::acos, std::asin, std::atan, std::atan2, std::cos, std::sin, std::tan;
@@ -161,7 +161,8 @@ struct CrownKernel {
   /// Of any mate: down to the fillet.
   [[nodiscard]] tooth_space::Borders active(Piece flank) const { return borders(flank); }
   [[nodiscard]] Vec2 about_tip(int side, double s) const {
-    const double h = tip<double>(s), r = double(cos_d) * h - double(sin_d) * s, z = -double(sin_d) * h - double(cos_d) * s;
+    const double h = tip<double>(s), r = double(cos_d) * h - double(sin_d) * s,
+                 z = -double(sin_d) * h - double(cos_d) * s;
     const double u = flank_at(std::atan2(r, z));
     return {u, v_at(tooth_space::flank_of(side), u, s)};
   }

@@ -15,7 +15,8 @@ using tooth_space::Piece;
 
 constexpr int kLeastTeeth = 5, kMostTeeth = 2000;
 constexpr double kLeastPitchAngle = 3, kMostPitchAngle = 89.9;  // deg
-constexpr double kElevationShare = 0.95;                        // of the pressure angle, where a crown of involutes ends
+constexpr double kBelowRoot = 0.5;                              // modules
+constexpr double kElevationShare = 0.95;  // of the pressure angle, where a crown of involutes ends
 constexpr int kHalvings = 60;
 
 /// The greatest value in (0, most] that a test admits, when smaller ones are better; 0: none is found.
@@ -49,9 +50,9 @@ class Inspection {
     positive("addendum", gear_.addendum_mm);
     positive("dedendum", gear_.dedendum_mm);
     positive("fillet_radius", gear_.fillet_radius_mm);
-    for (const auto& [name, value] : {std::pair{"bore_diameter", gear_.bore_diameter_mm},
-                                      std::pair{"hub_diameter", gear_.hub_diameter_mm},
-                                      std::pair{"hub_length", gear_.hub_length_mm}})
+    for (const auto& [name, value] :
+         {std::pair{"bore_diameter", gear_.bore_diameter_mm}, std::pair{"hub_diameter", gear_.hub_diameter_mm},
+          std::pair{"hub_length", gear_.hub_length_mm}})
       if (!(value >= 0)) refuse(name, "{} = {:.6g} mm is below 0", name, value);
   }
 
@@ -63,8 +64,8 @@ class Inspection {
       return;
     }
     if (!(w.theta_f < gear_.pitch_angle_rad))
-      refuse("dedendum", "dedendum = {:.4f} mm gives a root angle of {:.4f} deg, which is not above 0", gear_.dedendum_mm,
-             degrees(gear_.pitch_angle_rad - w.theta_f));
+      refuse("dedendum", "dedendum = {:.4f} mm gives a root angle of {:.4f} deg, which is not above 0",
+             gear_.dedendum_mm, degrees(gear_.pitch_angle_rad - w.theta_f));
     const double h_root = -std::tan(w.theta_f) * w.R_i, h_tip = w.tip<double>(-w.R_i);
     if (!(h_tip > h_root))
       refuse("tip_angle", "the face cone lies {:.4f} mm below the root cone at the small end", h_root - h_tip);
@@ -74,18 +75,27 @@ class Inspection {
     if (!(w.psi > 0 && w.psi * w.sin_d < 1))
       refuse("thickness_shift", "thickness_shift = {:.4f} leaves a space of {:.4f} mm on the outer pitch circle",
              gear_.thickness_shift, 2 * w.psi * w.R_e);
-    const double most = 2 * (w.R_i * std::sin(gear_.pitch_angle_rad - w.theta_f) * 1.0);
-    if (!(gear_.bore_diameter_mm < most))
-      refuse("bore_diameter", "bore_diameter = {:.4f} mm is not below {:.4f} mm, the root diameter of the small end",
-             gear_.bore_diameter_mm, most);
+    const double share = w.R_i / w.R_e, below = kBelowRoot * gear_.outer_transverse_module_mm,
+                 front = 2 * (w.R_i * w.sin_d - (gear_.dedendum_mm + below) * share * w.cos_d),
+                 back = 2 * (w.R_e * w.sin_d - (gear_.dedendum_mm + below) * w.cos_d);
+    if (!(gear_.bore_diameter_mm < front))
+      refuse("bore_diameter", "bore_diameter = {:.4f} mm is not below {:.4f} mm, the body under the small end",
+             gear_.bore_diameter_mm, front);
+    if (gear_.hub_length_mm > 0 && !(gear_.hub_diameter_mm > gear_.bore_diameter_mm && gear_.hub_diameter_mm < back))
+      refuse("hub_diameter",
+             "hub_diameter = {:.4f} mm is not between the bore, {:.4f} mm, and {:.4f} mm, the body under "
+             "the large end",
+             gear_.hub_diameter_mm, gear_.bore_diameter_mm, back);
     if (gear_.form != Form::spherical_involute) return;
     const double limit = kElevationShare * gear_.pressure_angle_rad,
                  tip = std::max(std::atan2(gear_.addendum_mm, w.R_e), std::atan2(h_tip, w.R_i));
     if (w.theta_f > limit)
-      refuse("dedendum", "dedendum = {:.4f} mm: the crown gear of spherical involutes ends {:.4f} mm below the pitch cone",
+      refuse("dedendum",
+             "dedendum = {:.4f} mm: the crown gear of spherical involutes ends {:.4f} mm below the pitch cone",
              gear_.dedendum_mm, w.R_e * std::tan(limit));
     if (tip > limit)
-      refuse("addendum", "addendum = {:.4f} mm: the crown gear of spherical involutes ends {:.4f} mm above the pitch cone",
+      refuse("addendum",
+             "addendum = {:.4f} mm: the crown gear of spherical involutes ends {:.4f} mm above the pitch cone",
              gear_.addendum_mm, w.R_e * std::tan(limit));
   }
 
@@ -98,7 +108,8 @@ class Inspection {
       return k.chi >= 0 && k.b_F > 0;
     });
     if (most > 0)
-      refuse("fillet_radius", "fillet_radius = {:.4f} mm does not fit on the crown gear's tooth tip; {:.4f} or less would do",
+      refuse("fillet_radius",
+             "fillet_radius = {:.4f} mm does not fit on the crown gear's tooth tip; {:.4f} or less would do",
              gear_.fillet_radius_mm, told(most));
     else
       refuse("dedendum", "dedendum = {:.4f} mm: the tip of the crown gear's tooth has no width for a rounding",
@@ -115,7 +126,8 @@ class Inspection {
       return k.b_F > 0 && !cut(k);
     });
     const std::string way =
-        most > 0 ? fmt::format("a dedendum of {:.4f} mm or less would do, or more pressure angle or fillet_radius", told(most))
+        most > 0 ? fmt::format("a dedendum of {:.4f} mm or less would do, or more pressure angle or fillet_radius",
+                               told(most))
                  : std::string("more pressure angle or more teeth are needed");
     refuse("dedendum", "dedendum = {:.4f} mm: the crown gear undercuts the flank of {} teeth above the fillet; {}",
            gear_.dedendum_mm, gear_.teeth, way);
@@ -129,13 +141,14 @@ class Inspection {
       const double land = top_land_mm(space, s);
       if (land >= least * share) continue;
       if (!(land > 0))
-        refuse("addendum", "the flanks do not reach the face cone at cone distance {:.4f} mm, or the tooth is pointed there",
-               -s);
-      else
         refuse("addendum",
-               "the top land at cone distance {:.4f} mm is {:.4f} mm, the least is {:.4f} mm ({:g} modules there); less "
-               "addendum, or a larger thickness_shift",
-               -s, land, least * share, gear_.least_land);
+               "the flanks do not reach the face cone at cone distance {:.4f} mm, or the tooth is pointed there", -s);
+      else
+        refuse(
+            "addendum",
+            "the top land at cone distance {:.4f} mm is {:.4f} mm, the least is {:.4f} mm ({:g} modules there); less "
+            "addendum, or a larger thickness_shift",
+            -s, land, least * share, gear_.least_land);
       return;
     }
   }
@@ -181,6 +194,20 @@ class StraightBevelPart final : public tooth_space::ToothedPart {
   StraightBevelGear gear_;
 };
 
+/// (s, h) of a radius and a height.
+Vec2 in_chart(const tooth_space::Chart& chart, double r, double z) {
+  const Vec3 p(r, 0, z);
+  return {chart.along(p), chart.up(p)};
+}
+/// (r, z) where an end of the teeth stops below its root.
+Vec2 end_of_face(const StraightBevelGear& gear, double s) {
+  const auto& w = gear.space().kernel();
+  const double share = -s / w.R_e,
+               h = s * std::tan(w.theta_f) - kBelowRoot * share * gear.parameters().outer_transverse_module_mm;
+  const auto& chart = gear.space().outline().chart;
+  return {chart.r(s, h), chart.z(s, h)};
+}
+
 }  // namespace
 
 double pitch_angle(int teeth, int mate_teeth, double shaft_angle_rad) {
@@ -222,6 +249,36 @@ Expected<StraightBevelGear, std::vector<Refusal>> StraightBevelGear::make(const 
   inspection.lands(*gear.space_);
   if (!inspection.refusals.empty()) return std::move(inspection.refusals);
   return gear;
+}
+
+std::array<double, 2> body_ends(const StraightBevelGear& gear) {
+  const auto& ring = gear.space().outline();
+  return {end_of_face(gear, ring.s_to).y(), end_of_face(gear, ring.s_from).y() + gear.parameters().hub_length_mm};
+}
+
+tooth_space::ToothedSolid drawn_solid(const StraightBevelGear& gear) {
+  const StraightBevelParameters& p = gear.parameters();
+  const auto& ring = gear.space().outline();
+  const tooth_space::Chart& chart = ring.chart;
+  const Vec2 front = end_of_face(gear, ring.s_to), back = end_of_face(gear, ring.s_from);
+  const double bore = 0.5 * p.bore_diameter_mm, hub = 0.5 * p.hub_diameter_mm;
+  tooth_space::ToothedSolid out;
+  out.teeth = p.teeth;
+  out.module_mm = p.outer_transverse_module_mm;
+  out.lowest_root = -p.dedendum_mm;
+  out.ways_out = {"less addendum leaves a wider land", "a smaller fillet_radius leaves a wider land", ""};
+  out.rings.push_back({&gear.space(), 0});
+  std::vector<Vec2>& corners = out.corners.emplace_back();
+  const auto add = [&](double r, double z) { corners.push_back(in_chart(chart, r, z)); };
+  add(front.x(), front.y());
+  add(bore, front.y());
+  add(bore, back.y() + p.hub_length_mm);
+  if (p.hub_length_mm > 0) {
+    add(hub, back.y() + p.hub_length_mm);
+    add(hub, back.y());
+  }
+  add(back.x(), back.y());
+  return out;
 }
 
 std::shared_ptr<const tooth_space::ToothedPart> part_of(const StraightBevelGear& gear) {

@@ -1,6 +1,7 @@
 // A whole straight bevel gear: its tooth space and its limits; refuses with key, value and limit.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "geometry/straight_bevel/crown_kernel.h"
 #include "geometry/tooth_space/kernel_space.h"
 #include "geometry/tooth_space/toothed_part.h"
+#include "geometry/tooth_space/toothed_solid.h"
 
 namespace toothpath::straight_bevel {
 
@@ -32,6 +34,12 @@ class StraightBevelGear {
 /// The gear as planners and proofs ask for it. The blank is turned: face cone, back and front cone, bore. The gear is
 /// copied.
 [[nodiscard]] std::shared_ptr<const tooth_space::ToothedPart> part_of(const StraightBevelGear& gear);
+
+/// The finished gear, which must outlive it. Both ends go down half a module below the roots there, the body behind
+/// them is flat; without a bore it reaches to the axis.
+[[nodiscard]] tooth_space::ToothedSolid drawn_solid(const StraightBevelGear& gear);
+/// z of the front of that body and of its back, hub included. mm
+[[nodiscard]] std::array<double, 2> body_ends(const StraightBevelGear& gear);
 
 /// Arc of the top land on the face cone at s. mm
 [[nodiscard]] double top_land_mm(const CrownSpace& space, double s);

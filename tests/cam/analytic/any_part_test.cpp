@@ -60,7 +60,8 @@ struct Transverse {
     const auto add = [&](Piece piece, double from, double to) {
       for (int k = 0; k <= kPoints; ++k) {
         Vec3 p, n;
-        if (w.place<double>(piece, from + (to - from) * k / kPoints, 0.0, p, n)) line.emplace_back(azimuth(p), radius(p));
+        if (w.place<double>(piece, from + (to - from) * k / kPoints, 0.0, p, n))
+          line.emplace_back(azimuth(p), radius(p));
       }
     };
     const double fillet_from = w.alpha_n, fillet_to = kPi / 2;
@@ -93,8 +94,8 @@ struct Solid {
       for (int k = 0; k < std::max(1, 2 * i); ++k)
         for (const double sign : {1.0, -1.0}) {
           const double polar = 0.5 * kPi * i / rings, around = kTwoPi * k / std::max(1, 2 * i);
-          const Vec3 d = sign * Vec3(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around),
-                                     std::cos(polar));
+          const Vec3 d =
+              sign * Vec3(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around), std::cos(polar));
           const int steps = 40;
           for (int n = 1; n <= steps; ++n) {
             const double way = least * n / steps;
@@ -117,7 +118,8 @@ Solid solid_of(const cylindrical::CylindricalParameters& gear) {
   for (std::size_t k = 0; k < gear.zones.size(); ++k) zones.emplace_back(gear, k);
   return {cylindrical::part_of(made(gear)), [gear, zones](const Vec3& p) {
             for (std::size_t k = 0; k < zones.size(); ++k)
-              if (p.z() >= gear.zones[k].from_mm && p.z() <= gear.zones[k].to_mm && zones[k].in_material(p)) return true;
+              if (p.z() >= gear.zones[k].from_mm && p.z() <= gear.zones[k].to_mm && zones[k].in_material(p))
+                return true;
             return zones.size() > 1 && p.z() > gear.zones[0].to_mm && p.z() < gear.zones[1].from_mm &&
                    radius(p) < 0.5 * *gear.groove_diameter_mm;
           }};

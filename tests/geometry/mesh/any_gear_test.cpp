@@ -1,4 +1,4 @@
-// Meshes of gears that stand on the tooth space alone, judged by their kernels: the cylindrical gear.
+// Meshes of gears that stand on the tooth space alone, judged by their kernels: cylindrical and straight bevel gears.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +8,7 @@
 #include "geometry/mesh/cgal_check.h"
 #include "geometry/mesh/tooth_mesh.h"
 #include "tests/geometry/cylindrical/samples.h"
+#include "tests/geometry/straight_bevel/samples.h"
 
 namespace toothpath::test {
 namespace {
@@ -137,6 +138,34 @@ TEST_P(AnyGearMesh, EveryFacetLiesWithinItsSagOfTheExactSurface) {
 
 INSTANTIATE_TEST_SUITE_P(Samples, AnyGearMesh, testing::ValuesIn(meshed_cylinders()),
                          [](const auto& at) { return at.param.name; });
+
+/// Teeth on a cone, with bore, with hub, and without either.
+TEST(StraightBevelMesh, IsOneClosedBodyOnItsExactSurface) {
+  for (const int kind : {0, 1, 2}) {
+    auto g = khk_pinion();
+    if (kind == 1) g.hub_diameter_mm = 36, g.hub_length_mm = 8;
+    if (kind == 2) g.bore_diameter_mm = 0;
+    const auto gear = straight_bevel::StraightBevelGear::make(g).value();
+    const tooth_space::ToothedSolid solid = drawn_solid(gear);
+    const auto pitch = mesh::mesh_tooth_space(solid, 0.02);
+    ASSERT_TRUE(pitch) << pitch.error().message;
+    const auto check = mesh::check_mesh(mesh::join_copies(*pitch));
+    ASSERT_TRUE(check) << check.error().message;
+    EXPECT_TRUE(check->is_solid()) << kind << ": " << check->self_intersections << " crossings";
+    EXPECT_EQ(check->components, 1u);
+    EXPECT_GT(check->volume_mm3, 0);
+    EXPECT_LE(pitch->max_sag(), 0.02);
+    for (std::size_t t = 0; t < pitch->tags.size(); t += 7) {
+      const mesh::TriangleTag& tag = pitch->tags[t];
+      if (int(tag.patch) >= tooth_space::kPieces) continue;
+      const Vec3 middle = (pitch->mesh.corner(t, 0) + pitch->mesh.corner(t, 1) + pitch->mesh.corner(t, 2)) / 3;
+      const Vec2 uv = (tag.uv[0] + tag.uv[1] + tag.uv[2]) / 3;
+      const auto foot = gear.space().foot(tag.patch, middle, uv.x(), uv.y());
+      ASSERT_TRUE(foot);
+      EXPECT_LE(std::abs(foot->distance), pitch->max_sag_mm[std::size_t(tag.patch)] + 1e-12);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace toothpath::test

@@ -55,7 +55,8 @@ TEST(StraightBevel, PlacesAndNormalsAreThePrintedOnes) {
   };
   const auto gear = made(khk_pinion());
   for (const Printed& q : all) {
-    const Piece piece = q.fillet ? (q.side > 0 ? Piece::fillet_plus : Piece::fillet_minus) : tooth_space::flank_of(q.side);
+    const Piece piece =
+        q.fillet ? (q.side > 0 ? Piece::fillet_plus : Piece::fillet_minus) : tooth_space::flank_of(q.side);
     // The place of the piece with the printed polar angle.
     const auto& w = gear.space().kernel();
     double a = q.fillet ? 0 : w.u_F, b = q.fillet ? w.b_F : -0.6;
@@ -77,7 +78,8 @@ TEST(StraightBevel, PiecesJoinSmoothly) {
     const auto gear = made(khk_pinion(form));
     const auto& w = gear.space().kernel();
     for (const double v : {-67.0, -50.0}) {
-      const auto flank = gear.space().at(Piece::flank_minus, w.u_F, v), join = gear.space().at(Piece::fillet_minus, w.b_F, v);
+      const auto flank = gear.space().at(Piece::flank_minus, w.u_F, v),
+                 join = gear.space().at(Piece::fillet_minus, w.b_F, v);
       ASSERT_TRUE(flank && join);
       EXPECT_LT((flank->p - join->p).norm(), 1e-11) << int(form);
       EXPECT_LT((flank->n - join->n).norm(), 1e-12);
@@ -144,7 +146,9 @@ TEST(StraightBevel, InvoluteHasAConstantMoment) {
   // Both forms have the same thickness on the pitch cone, and differ by micrometres at the tip.
   const auto octoid = made(khk_pinion());
   const auto& o = octoid.space().kernel();
-  const auto at = [](const auto& g, double u, double R) { return azimuth(g.space().point(Piece::flank_minus, u, -R)->p); };
+  const auto at = [](const auto& g, double u, double R) {
+    return azimuth(g.space().point(Piece::flank_minus, u, -R)->p);
+  };
   const double pitch = khk_pinion().pitch_angle_rad;
   EXPECT_NEAR(at(gear, w.flank_at(pitch), 54), at(octoid, o.flank_at(pitch), 54), 1e-12);
 }
@@ -157,9 +161,9 @@ TEST(StraightBevel, EnclosuresHold) {
     Random random(3);
     for (int k = 0; k < 60; ++k) {
       const Piece piece = k % 3 == 0 ? Piece::flank_plus : k % 3 == 1 ? Piece::fillet_minus : Piece::root;
-      const double u = k % 3 == 0 ? w.u_F + (form == Form::octoid ? -1 : 1) * random(0, 0.1)
-                                  : k % 3 == 1 ? random(0, 1) * w.b_F
-                                               : random(0, 1);
+      const double u = k % 3 == 0   ? w.u_F + (form == Form::octoid ? -1 : 1) * random(0, 0.1)
+                       : k % 3 == 1 ? random(0, 1) * w.b_F
+                                    : random(0, 1);
       tooth_space::PatchFrame frame;
       frame.origin = {u, random(-67, -46)};
       const double ha = 0.01, hb = 0.3, step = 1e-4;
@@ -196,7 +200,8 @@ TEST(StraightBevel, EveryLimitIsRefusedByItsKey) {
       {"backlash", [](auto& g) { g.backlash_mm = -0.1; }},
       {"bore_diameter", [](auto& g) { g.bore_diameter_mm = 60; }},
       {"hub_length", [](auto& g) { g.hub_length_mm = -1; }},
-      {"dedendum", [](auto& g) { g.form = Form::spherical_involute, g.pressure_angle_rad = radians(5), g.dedendum_mm = 6; }},
+      {"dedendum",
+       [](auto& g) { g.form = Form::spherical_involute, g.pressure_angle_rad = radians(5), g.dedendum_mm = 6; }},
   };
   for (const auto& [key, change] : all) {
     auto g = khk_pinion();

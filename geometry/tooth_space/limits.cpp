@@ -1,0 +1,115 @@
+#include "geometry/tooth_space/limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toothpath::tooth_space {
+namespace {
+
+constexpr int kHalvings = 60;
+
+/// u of the flank of a side where it meets the tip surface at s.
+std::optional<double> tip_u(const ToothSpace& space, int side, double s) {
+  const auto edge = space.tip_edge(side, s);
+  return edge ? std::optional(edge->u) : std::nullopt;
+}
+
+/// Least distance from a place to the walls, less `radius`.
+double room(const ToothSpace& space, double s, const Vec3& centre, double radius) {
+  constexpr int kStarts = 9;
+  double least = INFINITY;
+  for (const Piece piece : {Piece::fillet_plus, Piece::flank_plus, Piece::fillet_minus, Piece::flank_minus}) {
+    Borders b = space.borders(piece);
+    if (is_flank(piece)) {
+      const auto tip = tip_u(space, side_of(piece), s);
+      if (!tip) continue;
+      (std::isfinite(b.from) ? b.to : b.from) = *tip;
+    }
+    for (int k = 0; k < kStarts; ++k) {
+      const double u = b.from + (b.to - b.from) * k / (kStarts - 1);
+      const auto start = place_at(space, piece, u, s);
+      if (!start) continue;
+      const auto v = space.start_v(piece, u, s, 0, {}, 1);
+      const auto foot = v ? space.foot(piece, centre, u, *v) : std::nullopt;
+      if (foot && b.hold(foot->u, 1e-9)) least = std::min(least, foot->distance - radius);
+    }
+  }
+  return least;
+}
+
+}  // namespace
+
+std::optional<PatchPoint> place_at(const ToothSpace& space, Piece piece, double u, double s) {
+  constexpr int kSteps = 20;
+  const Chart& chart = space.outline().chart;
+  for (int attempt = 0; attempt < ToothSpace::kStarts; ++attempt) {
+    const auto start = space.start_v(piece, u, s, 0, {}, attempt);
+    if (!start) continue;
+    double v = *start;
+    for (int k = 0; k < kSteps; ++k) {
+      const auto q = space.at(piece, u, v);
+      if (!q) break;
+      const double lack = s - chart.along(q->p);
+      if (std::abs(lack) <= 1e-11 * (1 + std::abs(s))) return q;
+      v += lack / chart.along(q->p, q->pv);
+    }
+  }
+  return {};
+}
+
+std::optional<PatchPoint> middle_of_flank(const ToothSpace& space, int side, double s) {
+  const Piece piece = flank_of(side);
+  const auto tip = tip_u(space, side, s);
+  const Borders b = space.borders(piece);
+  const double fillet = std::isfinite(b.from) ? b.from : b.to;
+  const auto low = place_at(space, piece, fillet, s);
+  if (!tip || !low) return {};
+  const Chart& chart = space.outline().chart;
+  const double wanted = 0.5 * (chart.up(low->p) + space.tip(s));
+  double below = fillet, above = *tip;
+  std::optional<PatchPoint> q;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double u = 0.5 * (below + above);
+    q = place_at(space, piece, u, s);
+    if (!q) return {};
+    (chart.up(q->p) < wanted ? below : above) = u;
+  }
+  return q;
+}
+
+SpaceLimits limits_at(const ToothSpace& space, double s, int side) {
+  constexpr int kPlaces = 65, kDoublings = 10;
+  SpaceLimits out;
+  // The curvature of a fillet grows towards the root or has one top on the way: the best of a grid, closed in on.
+  const Piece fillet = side > 0 ? Piece::fillet_plus : Piece::fillet_minus;
+  const Borders b = space.borders(fillet);
+  const auto hollow = [&](double u) {
+    const auto q = place_at(space, fillet, u, s);
+    return q ? -principal_curvatures(*q).least : 0.0;
+  };
+  const auto place = [&](int k) { return b.from + (b.to - b.from) * std::clamp(k, 0, kPlaces - 1) / (kPlaces - 1); };
+  int best = 0;
+  double most = -INFINITY;
+  for (int k = 0; k < kPlaces; ++k)
+    if (const double h = hollow(place(k)); h > most) most = h, best = k;
+  double low = place(best - 1), high = place(best + 1);
+  for (int k = 0; k < kHalvings; ++k) {
+    const double a = low + (high - low) / 3, c = high - (high - low) / 3;
+    (hollow(a) < hollow(c) ? low : high) = hollow(a) < hollow(c) ? a : c;
+  }
+  most = std::max(most, hollow(0.5 * (low + high)));
+  if (most > 0) out.fillet_radius_min_mm = 1 / most;
+  const auto root = place_at(space, Piece::root, 0.5, s);
+  if (!root) return out;
+  const auto fits = [&](double R) { return room(space, s, root->p + R * root->n, R) >= 0; };
+  double fit = 0, stuck = std::max(space.tip(s) - space.outline().chart.up(root->p), 1e-6);
+  for (int k = 0; k < kDoublings && fits(stuck); ++k) stuck *= 2;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (fit + stuck);
+    (fits(middle) ? fit : stuck) = middle;
+  }
+  out.root_ball_radius_mm = fit;
+  return out;
+}
+
+}  // namespace toothpath::tooth_space
