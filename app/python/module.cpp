@@ -17,8 +17,7 @@
 #include "app/report/limits/json.h"
 #include "geometry/base/inputs_read.h"
 #include "geometry/face_gear/part.h"
-#include "geometry/inspection/grid.h"
-#include "geometry/mesh/bevel_mesh.h"
+#include "geometry/inspection/bevel_grid.h"
 
 namespace toothpath::python {
 namespace {
@@ -82,9 +81,10 @@ struct Grid {
   Numbers points, normals;
 };
 
-template <typename Point, typename Zone, typename Side>
-std::vector<Grid> grids_of(const std::vector<Point>& points, int rows, int columns, Zone zone, Side side) {
-  const std::size_t count = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
+template <typename Name>
+std::vector<Grid> grids_of(const std::vector<inspection::InspectionPoint>& points,
+                           const inspection::InspectionOptions& options, const Name& name) {
+  const std::size_t count = static_cast<std::size_t>(options.rows) * static_cast<std::size_t>(options.columns);
   std::vector<Grid> out;
   for (std::size_t first = 0; first + count <= points.size(); first += count) {
     std::vector<Vec3> p, n;
@@ -92,8 +92,8 @@ std::vector<Grid> grids_of(const std::vector<Point>& points, int rows, int colum
       p.push_back(points[k].p);
       n.push_back(points[k].n);
     }
-    out.push_back({points[first].*zone, rows, columns, side(points[first]), array_of(p, rows, columns),
-                   array_of(n, rows, columns)});
+    out.push_back({points[first].zone, options.rows, options.columns, name(points[first].side),
+                   array_of(p, options.rows, options.columns), array_of(n, options.rows, options.columns)});
   }
   return out;
 }
@@ -116,20 +116,17 @@ class Gear {
 
   [[nodiscard]] std::vector<Grid> flanks(std::optional<int> rows, std::optional<int> columns,
                                          std::optional<double> margin) const {
+    const inspection::InspectionOptions usual = face_ ? inspection::InspectionOptions{} : inspection::kBevelInspection;
+    const inspection::InspectionOptions options{rows.value_or(usual.rows), columns.value_or(usual.columns),
+                                                margin.value_or(usual.margin)};
     if (face_) {
-      const inspection::InspectionOptions usual;
-      const inspection::InspectionOptions options{rows.value_or(usual.rows), columns.value_or(usual.columns),
-                                                  margin.value_or(usual.margin)};
       const auto points = value_or_raise(inspection::inspection_grid(drawn_solid(*face_), options));
-      return grids_of(points, options.rows, options.columns, &inspection::InspectionPoint::zone,
-                      [](const inspection::InspectionPoint& p) { return py::int_(p.side); });
+      return grids_of(points, options, [](int side) { return py::int_(side); });
     }
-    const mesh::BevelInspectionOptions usual;
-    const mesh::BevelInspectionOptions options{rows.value_or(usual.rows), columns.value_or(usual.columns),
-                                               margin.value_or(usual.margin)};
-    const auto points = value_or_raise(mesh::bevel_inspection_grid(*bevel_, options));
-    return grids_of(points, options.rows, options.columns, &mesh::BevelInspectionPoint::half,
-                    [](const mesh::BevelInspectionPoint& p) { return py::str(p.sigma > 0 ? "L" : "U"); });
+    const auto points = value_or_raise(inspection::bevel_inspection_grid(*bevel_, options));
+    return grids_of(points, options, [](int side) {
+      return py::str(side > 0 ? inspection::kWallNames.plus : inspection::kWallNames.minus);
+    });
   }
 
  private:

@@ -86,11 +86,12 @@ Result<std::vector<InspectionPoint>> inspection_grid(const tooth_space::ToothedS
   return grid;
 }
 
-std::string inspection_csv(const std::vector<InspectionPoint>& points) {
+std::string inspection_csv(const std::vector<InspectionPoint>& points, const FlankNames& names) {
   std::string text = "zone,flank,row,column,x,y,z,i,j,k\n";
   const auto number = [&](double v) { fmt::format_to(std::back_inserter(text), ",{:.13g}", v + 0.0); };  // -0 becomes 0
   for (const InspectionPoint& point : points) {
-    fmt::format_to(std::back_inserter(text), "{},{},{},{}", point.zone, point.side, point.row, point.column);
+    fmt::format_to(std::back_inserter(text), "{},{},{},{}", point.zone, point.side > 0 ? names.plus : names.minus,
+                   point.row, point.column);
     for (int k = 0; k < 3; ++k) number(point.p[k]);
     for (int k = 0; k < 3; ++k) number(point.n[k]);
     text += '\n';

@@ -32,7 +32,11 @@ struct InspectionPoint {
 /// where the flank does not reach from tip to fillet.
 [[nodiscard]] Result<std::vector<InspectionPoint>> inspection_grid(const tooth_space::ToothedSolid& gear,
                                                                    const InspectionOptions& options = {});
+/// What the sides +1 and -1 are called in files.
+struct FlankNames {
+  const char *plus = "1", *minus = "-1";
+};
 /// Lines `zone,flank,row,column,x,y,z,i,j,k` with that header; 13 significant digits; lines end in "\n".
-[[nodiscard]] std::string inspection_csv(const std::vector<InspectionPoint>& points);
+[[nodiscard]] std::string inspection_csv(const std::vector<InspectionPoint>& points, const FlankNames& names = {});
 
 }  // namespace toothpath::inspection

@@ -224,36 +224,4 @@ Result<TriangleMesh> bevel_pitch_mesh(const bevel_gear::BevelGear& g, std::vecto
   return mesh;
 }
 
-Result<std::vector<BevelInspectionPoint>> bevel_inspection_grid(const bevel_gear::BevelGear& g,
-                                                                const BevelInspectionOptions& o) {
-  std::vector<BevelInspectionPoint> out;
-  for (std::size_t i = 0; i < g.halves().size(); ++i)
-    for (int k = 0; k < 2; ++k) {
-      const auto& half = g.halves()[i];
-      const auto& w = half.walls[k];
-      const double low = w.cutter.x_B + 0.02, high = g.parameters().addendum_mm;
-      for (int r = 0; r < o.rows; ++r)
-        for (int c = 0; c < o.columns; ++c) {
-          const double u = o.margin + (1 - 2 * o.margin) * r / (o.rows - 1),
-                       v = o.margin + (1 - 2 * o.margin) * c / (o.columns - 1);
-          const double height = low + (high - low) * u, ell = half.ell_from + (half.ell_to - half.ell_from) * v;
-          const auto at = bevel_gear::bevel_inverse(w, ell, height);
-          if (!at)
-            return fail("wall {} has no point at cone distance {:.4f}, height {:.4f}", w.sigma > 0 ? "L" : "U", ell,
-                        height);
-          const auto f = w.point(at->beta, at->p);
-          out.push_back({static_cast<int>(i), w.sigma, r, c, f.p, f.n});
-        }
-    }
-  return out;
-}
-
-std::string bevel_inspection_csv(const std::vector<BevelInspectionPoint>& points) {
-  std::string text = "zone,flank,row,column,x,y,z,i,j,k\n";
-  for (const auto& q : points)
-    text += fmt::format("{},{},{},{},{:.13g},{:.13g},{:.13g},{:.13g},{:.13g},{:.13g}\n", q.half,
-                        q.sigma > 0 ? 'L' : 'U', q.row, q.column, q.p.x(), q.p.y(), q.p.z(), q.n.x(), q.n.y(), q.n.z());
-  return text;
-}
-
 }  // namespace toothpath::mesh

@@ -1,11 +1,10 @@
-// Meshes and inspection points of the equal-base-circle bevel gear, from its exact walls.
+// Meshes of the equal-base-circle bevel gear, from its exact walls.
 //
 // Structured: stations of equal cone distance along the face (both edges of the relief groove among them), and on each
 // a loop of points wall L, root, wall U, top land, for every tooth space. The body below is a ring parallel to the
 // pitch cone. Blank frame, mm.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "geometry/bevel_gear/gear.h"
@@ -35,23 +34,5 @@ struct BevelMeshOptions {
 /// root, 2 wall U, 3 top land, 4 groove.
 [[nodiscard]] Result<TriangleMesh> bevel_pitch_mesh(const bevel_gear::BevelGear& gear, std::vector<double>& patch,
                                                     const BevelMeshOptions& options = {});
-
-/// Nominal point of a wall of tooth space 0.
-struct BevelInspectionPoint {
-  int half = 0;                             ///< zone, from the inside
-  int sigma = 1;                            ///< +1: flank L, -1: flank U
-  int row = 0;                              ///< 0: nearest the fillet
-  int column = 0;                           ///< 0: nearest the apex
-  Vec3 p = Vec3::Zero(), n = Vec3::Zero();  ///< mm; unit, out of the material
-};
-struct BevelInspectionOptions {
-  int rows = 7, columns = 11;
-  double margin = 0.02;  ///< part of profile and face kept clear at each edge
-};
-/// Rows of equal height between the fillet and the tip, columns of equal cone distance. None in the groove.
-[[nodiscard]] Result<std::vector<BevelInspectionPoint>> bevel_inspection_grid(
-    const bevel_gear::BevelGear& gear, const BevelInspectionOptions& options = {});
-/// Lines `zone,flank,row,column,x,y,z,i,j,k` with that header, flank L or U, 13 significant digits.
-[[nodiscard]] std::string bevel_inspection_csv(const std::vector<BevelInspectionPoint>& points);
 
 }  // namespace toothpath::mesh

@@ -41,7 +41,12 @@ ValueShape list_shape(ValueKind kind, const Range& range, const Count& count) {
 TableReader::TableReader(const TomlValue& table, std::string path, ReaderFindings& findings)
     : table_(*table.table()), position_(table.position), path_(std::move(path)), findings_(&findings) {
   findings.positions[path_] = position_;
-  for (const auto& entry : table_.entries) findings.positions[join(entry.key)] = entry.value.position;
+  for (const auto& entry : table_.entries) {
+    findings.positions[join(entry.key)] = entry.value.position;
+    const TomlArray* const array = entry.value.array();
+    for (std::size_t k = 0; array != nullptr && k < array->values.size() && array->values[k].text(); ++k)
+      findings.positions[fmt::format("{}[{}]", join(entry.key), k)] = array->values[k].position;
+  }
 }
 
 std::string TableReader::join(std::string_view key) const {

@@ -65,6 +65,13 @@ class Judge {
     errors_.push_back(fail_at(machine_.where(key), text, std::forward<Args>(args)...));
   }
 
+  /// Where that line of a list stands.
+  template <typename... Args>
+  void refuse_line(const char* key, std::size_t line, fmt::format_string<Args...> text, Args&&... args) {
+    const std::string element = fmt::format("{}[{}]", key, line);
+    refuse(machine_.positions.contains(element) ? std::string_view(element) : key, text, std::forward<Args>(args)...);
+  }
+
   void digits() {
     const auto look = [this](const char* key, const std::optional<int>& given) {
       if (given && (*given < 1 || *given > 7))
@@ -220,9 +227,10 @@ class Judge {
       if (words_.write != nullptr)
         return refuse(key, "{}: dialect \"{}\" takes no lines of the shop", key, words_.name);
       const auto names = text::names_of_own_lines(words_, tool);
-      for (const std::string& line : lines)
-        if (const auto name = text::unknown_name(line, names))
-          refuse(key, "{}: \"{}\" names {{{}}}, which is none of {{{}}}", key, line, *name, fmt::join(names, "} {"));
+      for (std::size_t k = 0; k < lines.size(); ++k)
+        if (const auto name = text::unknown_name(lines[k], names))
+          refuse_line(key, k, "{}: \"{}\" names {{{}}}, which is none of {{{}}}", key, lines[k], *name,
+                      fmt::join(names, "} {"));
     };
     look("post.start", own.start, false);
     look("post.between_teeth", own.between_teeth, true);
@@ -239,9 +247,9 @@ class Judge {
     if (control_.acting_comment == nullptr) return;
     const machines::PostSettings& post = machine_.post;
     const auto look = [this](const char* key, const std::vector<std::string>& lines) {
-      for (const std::string& line : lines)
-        if (const auto found = control_.acting_comment(line))
-          refuse(key, "{}: \"{}\", column {}: {}; leave it out", key, line, found->column, found->text);
+      for (std::size_t k = 0; k < lines.size(); ++k)
+        if (const auto found = control_.acting_comment(lines[k]))
+          refuse_line(key, k, "{}: \"{}\", column {}: {}; leave it out", key, lines[k], found->column, found->text);
     };
     look("post.start", post.own_lines.start);
     look("post.tool_change", post.own_lines.tool_change.value_or(std::vector<std::string>{}));
@@ -268,11 +276,11 @@ class Judge {
              words_.name);
     const auto names = text::names_of_check_lines();
     bool tolerance = false;
-    for (const std::string& line : lines) {
-      tolerance = tolerance || line.find("{tolerance}") != std::string::npos;
-      if (const auto name = text::unknown_name(line, names))
-        refuse("tool_check.lines", "tool_check.lines: \"{}\" names {{{}}}, which is none of {{{}}}", line, *name,
-               fmt::join(names, "} {"));
+    for (std::size_t k = 0; k < lines.size(); ++k) {
+      tolerance = tolerance || lines[k].find("{tolerance}") != std::string::npos;
+      if (const auto name = text::unknown_name(lines[k], names))
+        refuse_line("tool_check.lines", k, "tool_check.lines: \"{}\" names {{{}}}, which is none of {{{}}}", lines[k],
+                    *name, fmt::join(names, "} {"));
     }
     if (!tolerance && !lines.empty() && !check.tolerance_mm)
       refuse("tool_check.lines",

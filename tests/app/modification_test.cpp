@@ -10,8 +10,8 @@
 #include "geometry/face_gear/inverse.h"
 #include "geometry/face_gear/limits.h"
 #include "geometry/face_gear/part.h"
+#include "geometry/inspection/bevel_grid.h"
 #include "geometry/inspection/grid.h"
-#include "geometry/mesh/bevel_mesh.h"
 #include "tests/app/judged.h"
 #include "tests/app/program.h"
 #include "tests/support/brute_force_bevel_gear.h"
@@ -217,7 +217,7 @@ TEST(ModifiedBevelGear, InspectionPointsLieOnTheWallsOfTheWords) {
   const BruteForceBevelGear words(parameters, mill);
   parameters.modifications.clear();
   const BruteForceBevelGear plain(parameters, mill);
-  const auto grid = mesh::bevel_inspection_grid(*gear.value_if());
+  const auto grid = inspection::bevel_inspection_grid(*gear.value_if());
   ASSERT_TRUE(grid);
   double off = 0, seen = 0;
   for (const auto& p : *grid) {

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "app/base/units.h"
-#include "geometry/mesh/bevel_mesh.h"
+#include "geometry/inspection/bevel_grid.h"
 
 namespace toothpath::bevel {
 namespace {
@@ -92,11 +92,7 @@ Result<CutWalls> walls_as_measured(const bevel_gear::BevelGear& gear, const job:
   grid.nominal = [&](int rows, int columns) -> Result<std::vector<inspection::InspectionPoint>> {
     if (rows < kLeastRows || columns < kLeastColumns)
       return fail("{} rows x {} columns; at least {} x {} are needed", rows, columns, kLeastRows, kLeastColumns);
-    const auto points = mesh::bevel_inspection_grid(gear, {rows, columns});
-    if (!points) return points.error();
-    std::vector<inspection::InspectionPoint> out;
-    for (const auto& q : *points) out.push_back({q.half, q.sigma, q.row, q.column, 0, 0, q.p, q.n});
-    return out;
+    return inspection::bevel_inspection_grid(gear, {rows, columns, inspection::kBevelInspection.margin});
   };
   grid.place = [&](const Vec3& p) {
     const auto at = bevel_gear::cone_point(p, gear.sin_delta(), gear.cos_delta());

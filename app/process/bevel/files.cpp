@@ -10,6 +10,7 @@
 #include "cam/finger/obstacles.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/json_text.h"
+#include "geometry/inspection/bevel_grid.h"
 #include "geometry/mesh/bevel_mesh.h"
 
 namespace toothpath::bevel {
@@ -29,9 +30,9 @@ Result<std::string> pitch_text(const bevel_gear::BevelGear& gear) {
 }
 
 Result<std::string> inspection_text(const bevel_gear::BevelGear& gear) {
-  const auto points = mesh::bevel_inspection_grid(gear);
+  const auto points = inspection::bevel_inspection_grid(gear);
   if (!points) return points.error();
-  return bevel_inspection_csv(*points);
+  return inspection_csv(*points, inspection::kWallNames);
 }
 
 std::string gear_words(const bevel_gear::BevelGearParameters& p) {

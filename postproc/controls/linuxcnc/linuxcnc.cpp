@@ -134,13 +134,25 @@ std::string tool_table(std::span<const tool::ToolAssembly> tools) {
 
 bool has_offset(std::string_view name) { return number_of_offset(name) > 0; }
 
+/// About the axis that its letter names: +1 as ISO says, -1 reversed.
+int sense_of(const machines::RotaryAxis& axis) { return axis.sign * (axis.direction[axis.letter - 'A'] < 0 ? -1 : 1); }
+
+/// One pin of a table of two rotaries says which way both of them turn; without it, and by default, both are reversed.
+std::string directions_note(const machines::KinematicChain& chain, const std::string& module) {
+  const int c = sense_of(chain.table[0]), tilt = sense_of(chain.table[1]);
+  if (c != tilt)
+    return fmt::format("{} turns C and {} both as ISO says or both reversed, this machine file does not", module,
+                       chain.table[1].letter);
+  return fmt::format("{}.conventional-directions must be {}", module, c > 0 ? "1" : "0, as by default");
+}
+
 /// Its modules know the tool by a pin alone. xyzbc-trt-kins of master had a wrong inverse for a while (PR 4546).
 text::NcLinesOfText tcp_notes(const machines::KinematicChain& chain) {
   const bool trunnion = chain.head.empty() && chain.table.size() == 2 && chain.table[0].letter == 'C';
   if (trunnion && chain.table[1].letter == 'A')
-    return {"TCP: motion.tooloffset.z must reach xyzac-trt-kins.tool-offset"};
+    return {"TCP: motion.tooloffset.z must reach xyzac-trt-kins.tool-offset", directions_note(chain, "xyzac-trt-kins")};
   if (trunnion && chain.table[1].letter == 'B')
-    return {"TCP: motion.tooloffset.z must reach xyzbc-trt-kins.tool-offset",
+    return {"TCP: motion.tooloffset.z must reach xyzbc-trt-kins.tool-offset", directions_note(chain, "xyzbc-trt-kins"),
             "xyzbc-trt-kins: none of master from 2025-06-26 to 2026-09-15, it errs"};
   const bool head = chain.table.empty() && chain.rotary_index('B') && chain.rotary_index('C');
   if (head) return {"TCP: 5axiskins.pivot-length is the pivot and motion.tooloffset.z"};

@@ -12,6 +12,7 @@
 #include "postproc/controls/registry.h"
 #include "tests/machines/bad_machine_files.h"
 #include "tests/machines/bad_post_keys.h"
+#include "tests/machines/example_files.h"
 #include "tests/postproc/readback/nc_case.h"
 #include "tests/postproc/text/post_forms.h"
 #include "tests/support/files.h"
@@ -114,18 +115,41 @@ TEST(Controls, LinuxcncSaysWhatItsTcpMustKnow) {
     return d ? fmt::format("{}", fmt::join(d->tcp_notes, "; ")) : d.error().message;
   };
   machines::Machine m = test::trunnion();
-  EXPECT_EQ(notes(m), "TCP: motion.tooloffset.z must reach xyzac-trt-kins.tool-offset");
+  for (machines::RotaryAxis& axis : m.chain.table) axis.sign = 1;
+  EXPECT_EQ(notes(m),
+            "TCP: motion.tooloffset.z must reach xyzac-trt-kins.tool-offset; xyzac-trt-kins.conventional-directions "
+            "must be 1");
+  m.chain.table[0].sign = -1;
+  EXPECT_EQ(notes(m),
+            "TCP: motion.tooloffset.z must reach xyzac-trt-kins.tool-offset; xyzac-trt-kins turns C and A both as ISO "
+            "says or both reversed, this machine file does not");
+  m.chain.table[1].sign = -1;
+  EXPECT_EQ(notes(m),
+            "TCP: motion.tooloffset.z must reach xyzac-trt-kins.tool-offset; xyzac-trt-kins.conventional-directions "
+            "must be 0, as by default");
   m.chain.table[1].letter = 'B';
   m.chain.table[1].direction = Vec3::UnitY();
   EXPECT_EQ(notes(m),
-            "TCP: motion.tooloffset.z must reach xyzbc-trt-kins.tool-offset; xyzbc-trt-kins: none of master from "
-            "2025-06-26 to 2026-09-15, it errs");
+            "TCP: motion.tooloffset.z must reach xyzbc-trt-kins.tool-offset; xyzbc-trt-kins.conventional-directions "
+            "must be 0, as by default; xyzbc-trt-kins: none of master from 2025-06-26 to 2026-09-15, it errs");
   m.chain.head = {m.chain.table[1]};
   m.chain.table.pop_back();
   EXPECT_EQ(notes(m), "TCP: motion.tooloffset.z must reach the kinematics");
   m.chain.head.insert(m.chain.head.begin(), m.chain.table[0]);
   m.chain.table.clear();
   EXPECT_EQ(notes(m), "TCP: 5axiskins.pivot-length is the pivot and motion.tooloffset.z");
+}
+
+// A line of a list is refused where it stands, not where the list begins.
+TEST(Controls, ALineOfAListIsRefusedAtItsPlace) {
+  const std::string file = std::string(test::kMachine) + "\n[post]\nstart = [\"M9\",\n  \"G4 {tool}\", \"(PY,x)\"]\n";
+  const int line = int(std::count(file.begin(), file.end(), '\n'));
+  const auto read = machines::read_machine_text(file, "m.toml");
+  ASSERT_TRUE(read.machine) << to_text(read.errors);
+  std::string places;
+  for (const auto& error : controls::judge(*read.machine))
+    places += error.text().substr(0, error.text().find(" error")) + " ";
+  EXPECT_EQ(places, fmt::format("m.toml:{0}:3: m.toml:{0}:16: ", line));
 }
 
 // A rotary that is not at its zero at 0 deg: with TCP the control calculates with its own data. One that counts from 0
