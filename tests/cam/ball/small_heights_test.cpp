@@ -36,7 +36,7 @@ struct Highest {
 path::ByRegion<Highest> highest_places(const analytic::GearDistance& part, const std::vector<Segment>& segments,
                                        int radii = 48) {
   constexpr int kPlacesOfPiece = 160;
-  const auto& space = sheet_of(part.space(0));
+  const auto& space = test::sheet_of(part.space(0));
   const double inner = space.ring().zone.inner_radius_mm, outer = space.ring().zone.outer_radius_mm;
   const tooth_space::OffsetSheet surface(space, 0, inner, outer, 17);
   path::ByRegion<Highest> out;
