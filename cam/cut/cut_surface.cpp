@@ -18,8 +18,6 @@ namespace {
 
 // A point counts as reached when a ball that touches it comes no closer than this to anything else, mm.
 constexpr double kReachTolerance = 1e-4;
-constexpr double kSpot =
-    0.2;  // of the ball's radius: what it reaches at an end of the ring alone is no farther from it
 constexpr double kSamePlace = 1e-6;  // a foot this near to a place of the grid is that place, mm
 constexpr int kHistogramBins = 40;
 constexpr int kSideSamples = 160;   // across a flank that the side of a mill cuts: its gap is a smooth cubic
@@ -104,20 +102,6 @@ class Meter {
     return q.distance >= R - kReachTolerance;
   }
 
-  /// Close to an end of the ring the ball must fit a little farther inside, too: where a wall beside has just ended it
-  /// reaches spots at the very end that no pass is laid for.
-  [[nodiscard]] bool reached(const ZonePlaces& places, const tooth_space::SheetPoint& s, double sigma, double r,
-                             double* residual = nullptr) const {
-    const path::Region region = path::region_of(s.piece);
-    if (!reachable(s.contact, region, residual)) return false;
-    if (operations_.empty() || by_side(region)) return true;
-    const double inside = kSpot * ball_in(region), low = places.radius(0) + inside, high = places.radius(1) - inside;
-    const double there = low < high ? std::clamp(r, low, high) : 0.5 * (low + high);
-    if (there == r) return true;
-    const auto beside = places.at(sigma, there);
-    return !beside || reachable(beside->contact, region);
-  }
-
   void grid(const ZonePlaces& places, int zone, tooth_space::Piece piece) {
     proof::SurfaceGrid g;
     g.zone = zone;
@@ -138,13 +122,12 @@ class Meter {
       const auto [from, to] = places.range(piece, r);
       for (int row = 0; row < g.rows; ++row) {
         const std::size_t k = std::size_t(row) * std::size_t(g.columns) + std::size_t(column);
-        const double sigma = from + (to - from) * row / (g.rows - 1);
-        const auto s = places.at(sigma, r);
+        const auto s = places.at(from + (to - from) * row / (g.rows - 1), r);
         if (!s) continue;
         g.points[k] = s->contact.p;
         g.normals[k] = s->contact.n;
         excess[k] = excess_of(s->contact.p);
-        g.reachable[k] = reached(places, *s, sigma, r, &residual[k]);
+        g.reachable[k] = reachable(s->contact, path::region_of(piece), &residual[k]);
         if (!g.reachable[k]) left[k] = s;
       }
       share.add();
@@ -178,7 +161,7 @@ class Meter {
         if (x <= std::min(line_max_[region], unreached_limit(region))) continue;
         const auto s = places.at(q.sigma, r);
         if (!s) continue;
-        if (reached(places, *s, q.sigma, r)) line_max_[region] = std::max(line_max_[region], x);
+        if (reachable(s->contact, region)) line_max_[region] = std::max(line_max_[region], x);
         else note_unreached(*s, zone, x);
       }
       share.add();
@@ -227,7 +210,7 @@ class Meter {
       if (top->left - valley < 0.02 * wanted) continue;  // two samples of one valley
       const auto [sigma, height] = crest(places, r, *(top - 1), *(top + 1));
       const auto s = places.at(sigma, r);
-      if (!s || !reached(places, *s, sigma, r)) continue;  // a corner that was left
+      if (!s || !reachable(s->contact, region)) continue;  // a corner that was left
       line_max_[region] = std::max(line_max_[region], height + operations_.back().allowance_mm);
       watch_crest(places, r, *(top - 1), *(top + 1), region, height + operations_.back().allowance_mm);
       const bool on_flank = is_flank(a.piece) && a.piece == b.piece;

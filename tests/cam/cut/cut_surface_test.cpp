@@ -1,6 +1,5 @@
 // What the programs leave: the measured cut surface against dense sampling, and the promises of the planner.
 #include "cam/cut/cut_surface.h"
-#include "cam/proof/limits.h"
 
 #include "cam/cut/swept_tool.h"
 #include "cam/cut/zone_places.h"
@@ -156,34 +155,13 @@ TEST(WideBall, LeavesTheCornerAndCutsNothing) {
   EXPECT_GT(cut.unreached.points, 10u);
   EXPECT_GT(cut.unreached.max_height_mm, 0.005);
   EXPECT_TRUE(job.plan.operations.back().corner_passes);
-  const analytic::GougeCheckOptions options{.limits = {}, .rapid_height_mm = job.gear.blank_top()};
+  const analytic::GougeCheckOptions options{.limits = {}, .rapid_height_mm = job.part->gear().blank_top()};
   const analytic::GougeCheck check(*job.part, job.tools, options);
   const auto gouge = check.check(job.motions(), job.tool_of_operation());
   EXPECT_GE(gouge.bound_mm, -cut.operations.back().min_mm);
   EXPECT_LE(gouge.bound_mm, options.limits.gouge_mm);
   EXPECT_TRUE(check.passes(gouge));
   EXPECT_EQ(surface(job_named("spur"), job_named("spur").motions()).unreached.points, 0u);
-}
-
-// A ball that is too wide for the root of leaning teeth touches a spot of it at the very ends of the ring, where one of
-// the walls that hold it has ended. No pass is laid for that, and nothing else is left above the cusp.
-TEST(WideBall, IsNotAskedForASpotAtTheEndOfTheRing) {
-  face_gear::FaceGearParameters g;
-  g.teeth = 123;
-  g.shaper_teeth = 36;
-  g.module_mm = 0.6;
-  g.module_plane = face_gear::ModulePlane::normal;
-  g.pressure_angle_rad = radians(22.699);
-  g.shaft_angle_rad = radians(91.207);
-  g.offset_mm = 0.3182;
-  g.shaper_tip_radius_mm = 0.054;
-  g.zones = {{radians(29.475), 44.5936, 45.3485}};
-  const auto job = test::planned(g, {test::ball_mill(0.45, 2.4, 0.405, 3.6, 10)},
-                                 {test::roughing(0, 0.225, 0.202, 0.0489), test::finishing(0, 0.0074, 0.003)});
-  const auto cut = surface(job, job.motions());
-  EXPECT_GT(cut.unreached.max_height_mm, 0.03);
-  for (const path::Region region : path::kRegions)
-    EXPECT_LE(cut.finished_in_mm[region], proof::most_left_mm(job.operations.back(), region)) << to_string(region);
 }
 
 TEST(Feed, ClimbsOnBothFlanksAndKeepsTheContactSpeed) {
