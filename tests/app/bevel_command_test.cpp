@@ -71,6 +71,10 @@ TEST_F(BevelCommand, RunIsVerifiedWithItsNumbers) {
   EXPECT_LE(r["gouge_um"]["bound"].get<double>(), 2.0);
   EXPECT_LE(r["excess_um"]["finished"]["bound"].get<double>(), 0.5 + 1.5);
   EXPECT_LE(r["ridge_mm"]["reached"].get<double>(), r["ridge_mm"]["requested"].get<double>());
+  const auto& cusps = r["scallop_um"];  // the ridges between passes are its cusps
+  EXPECT_NEAR(cusps["requested"].get<double>(), 1e3 * r["ridge_mm"]["requested"].get<double>(), 1e-9);
+  EXPECT_NEAR(cusps["reached_max"].get<double>(), 1e3 * r["ridge_mm"]["reached"].get<double>(), 1e-9);
+  EXPECT_LE(cusps["reached_min"].get<double>(), cusps["reached_max"].get<double>());
   EXPECT_LT(r["clearance"]["least"].get<double>(), 1.0) << "shank above the tips";
   EXPECT_GE(r["clearance"]["measured"].get<double>(), r["clearance"]["least"].get<double>());
   EXPECT_LT(r["clearance"]["measured"].get<double>(), 1.0) << "at the tip edges beside the space";
