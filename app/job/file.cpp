@@ -62,7 +62,12 @@ void read_job(toml::TableReader& root, Job& job) {
   if (auto table = root.table("machine")) job.machine = read_machine_choice(*table);
   if (auto table = root.table("setup")) job.setup = read_setup(*table, job);
   if (auto table = root.table("shaping")) job.shaping = read_shaping(*table);
-  if (auto table = root.table("contact")) job.contact = read_contact(*table, job);
+  if (job.cylindrical_gear()) {
+    if (root.misplaced("contact"))
+      root.refuse("contact", "[contact] is not there yet for a cylindrical_gear: leave it out");
+  } else if (auto table = root.table("contact")) {
+    job.contact = read_contact(*table, job);
+  }
   if (auto table = root.table("coolant")) job.coolant = read_coolant(*table);
   if (auto table = root.table("material")) job.material = read_material(*table);
   if (auto table = root.table("verify")) job.verify = read_verify(*table, job.bevel_gear() != nullptr);
@@ -77,7 +82,8 @@ void read_job(toml::TableReader& root, Job& job) {
   if (operations.size() > kMostOperations)
     root.refuse("operation", "{} operations exceed the limit {}", operations.size(), kMostOperations);
   for (auto& table : operations)
-    job.operations.push_back(read_operation(table, job.tools, job.bevel_gear() != nullptr));
+    job.operations.push_back(
+        read_operation(table, {job.tools, job.bevel_gear() != nullptr, job.face_gear() != nullptr}));
   check_milling(root, job);
   if (root.errors() == 0 && !job.bevel_gear()) check_regions(root, job.operations);
   root.finish();

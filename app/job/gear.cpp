@@ -35,20 +35,34 @@ void optional_cylinder(toml::TableReader& gear, const std::string& name, double&
   if (has_length && !has_diameter) gear.refuse(tall, "{} = {} mm needs {} as well", tall, length, wide);
 }
 
-void read_zones(toml::TableReader& gear, face_gear::FaceGearParameters& result, std::vector<std::string>& warnings) {
+void read_module_plane(toml::TableReader& gear, ModulePlane& plane) {
+  if (const auto word = gear.word("module_plane", {"normal", "transverse"}))
+    plane = *word == "normal" ? ModulePlane::normal : ModulePlane::transverse;
+}
+
+double read_helix_angle(toml::TableReader& zone, std::vector<std::string>& warnings) {
+  const auto angle = zone.number("helix_angle", kHelixAngle);
+  if (!angle) return 0;
+  if (std::abs(*angle) > 1e-3 && std::abs(*angle) < 1.1) {
+    const auto at = zone.where("helix_angle");
+    warnings.push_back(fmt::format("{}:{}:{}: warning: helix_angle = {} deg; were {:.3f} deg meant (radians)?", at.file,
+                                   at.line, at.column, *angle, degrees(*angle)));
+  }
+  return radians(*angle);
+}
+
+/// The [[gear.zone]] tables, one or two.
+std::vector<toml::TableReader> zone_tables(toml::TableReader& gear) {
   auto zones = gear.tables("zone", {1, kMostZones}, toml::Presence::required);
   if (!gear.has("zone")) gear.refuse("zone", "[gear] lacks its teeth: at least one [[gear.zone]]");
   if (zones.size() > kMostZones) gear.refuse("zone", "{} zones exceed the limit {}", zones.size(), kMostZones);
-  for (auto& table : zones) {
+  return zones;
+}
+
+void read_zones(toml::TableReader& gear, face_gear::FaceGearParameters& result, std::vector<std::string>& warnings) {
+  for (auto& table : zone_tables(gear)) {
     face_gear::FaceGearZone zone;
-    if (const auto angle = table.number("helix_angle", kHelixAngle)) {
-      zone.helix_angle_rad = radians(*angle);
-      if (std::abs(*angle) > 1e-3 && std::abs(*angle) < 1.1) {
-        const auto at = table.where("helix_angle");
-        warnings.push_back(fmt::format("{}:{}:{}: warning: helix_angle = {} deg; were {:.3f} deg meant (radians)?",
-                                       at.file, at.line, at.column, *angle, degrees(*angle)));
-      }
-    }
+    zone.helix_angle_rad = read_helix_angle(table, warnings);
     const auto inner = table.number("inner_radius", kRadius);
     const auto outer = table.number("outer_radius", kRadius);
     zone.inner_radius_mm = inner.value_or(0);
@@ -75,8 +89,7 @@ face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::Tabl
   p.mate_teeth = gear.optional_integer("mate_teeth", {3, 1000}).value_or(0);
   const auto module = gear.number("module", kModule);
   p.module_mm = module.value_or(0);
-  if (const auto plane = gear.word("module_plane", {"normal", "transverse"}))
-    p.module_plane = *plane == "normal" ? face_gear::ModulePlane::normal : face_gear::ModulePlane::transverse;
+  read_module_plane(gear, p.module_plane);
   p.pressure_angle_rad = radians(gear.number("pressure_angle", kPressureAngle).value_or(0));
   p.addendum_coefficient = gear.number_or("addendum_coefficient", {0.1, 2}, p.addendum_coefficient);
   p.clearance_coefficient = gear.number_or("clearance_coefficient", {0, 1}, p.clearance_coefficient);
@@ -160,6 +173,52 @@ bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear, const s
   return p;
 }
 
+cylindrical::CylindricalParameters read_cylindrical_gear(toml::TableReader& gear, std::vector<std::string>& warnings) {
+  cylindrical::CylindricalParameters p;
+  p.teeth = gear.integer("teeth", kTeeth).value_or(0);
+  const auto module = gear.number("module", kModule);
+  p.module_mm = module.value_or(0);
+  read_module_plane(gear, p.module_plane);
+  p.pressure_angle_rad = radians(gear.number("pressure_angle", kPressureAngle).value_or(0));
+  p.profile_shift = gear.number_or("profile_shift", {-5, 5}, p.profile_shift);
+  p.addendum_coefficient = gear.number_or("addendum_coefficient", {0.1, 3}, p.addendum_coefficient);
+  p.dedendum_coefficient = gear.number_or("dedendum_coefficient", {0.1, 3}, p.dedendum_coefficient);
+  p.root_radius_coefficient = gear.number_or("root_radius_coefficient", {0, 1}, p.root_radius_coefficient);
+  p.tip_diameter_mm = gear.optional_number("tip_diameter", kLength);
+  p.thickness_allowance_mm = gear.number_or("thickness_allowance", {-100, 0, " mm"}, p.thickness_allowance_mm);
+  p.bore_diameter_mm = gear.number_or("bore_diameter", kLengthOrZero, p.bore_diameter_mm);
+  p.groove_diameter_mm = gear.optional_number("groove_diameter", kLength);
+  const auto land = gear.optional_number("least_land", kLengthOrZero);
+  if (module && land && *land >= *module)
+    gear.refuse("least_land", "least_land = {} mm is not below module = {} mm", *land, *module);
+  else if (module && land && *land > 0) p.least_land = *land / *module;
+  for (auto& table : zone_tables(gear)) {
+    cylindrical::CylindricalZone zone;
+    zone.helix_angle_rad = read_helix_angle(table, warnings);
+    const auto from = table.number("from", kSignedLength), to = table.number("to", kSignedLength);
+    zone.from_mm = from.value_or(0);
+    zone.to_mm = to.value_or(0);
+    if (from && to && *to <= *from) table.refuse("to", "to = {} mm is not above from = {} mm", *to, *from);
+    else if (from && to && *to - *from < kLeastFace)
+      table.refuse("to", "to - from = {:.6g} mm of face is below {} mm", *to - *from, kLeastFace);
+    else if (from && !p.zones.empty() && *from <= p.zones.back().to_mm)
+      table.refuse("from", "from = {} mm is not above {} mm, the end of the zone before: zones rise in z", *from,
+                   p.zones.back().to_mm);
+    table.finish();
+    p.zones.push_back(zone);
+  }
+  if (gear.misplaced("modification"))
+    gear.refuse("modification",
+                "[[gear.modification]] is not there yet for a cylindrical_gear: leave it out, the flanks are plain");
+  gear.finish();
+  return p;
+}
+
+/// [stock] is a table of face gears.
+void refuse_stock(toml::TableReader& root, const Job& job) {
+  if (root.misplaced("stock")) root.refuse("stock", "[stock] belongs to face gears; this gear is {}", job.gear_type());
+}
+
 /// A type of gear in job files.
 struct GearType {
   const char* word;
@@ -177,8 +236,12 @@ constexpr GearType kGearTypes[] = {
     {"equal_base_circle_bevel_gear",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
        job.gear = read_bevel_gear(gear, job.directory());
-       if (root.misplaced("stock"))
-         root.refuse("stock", "[stock] belongs to face gears; this gear is {}", job.gear_type());
+       refuse_stock(root, job);
+     }},
+    {"cylindrical_gear",
+     [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
+       job.gear = read_cylindrical_gear(gear, job.warnings);
+       refuse_stock(root, job);
      }},
 };
 static_assert(std::size(kGearTypes) == std::variant_size_v<decltype(Job::gear)>);

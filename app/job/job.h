@@ -15,6 +15,7 @@
 #include "geometry/base/diagnostic.h"
 #include "geometry/bevel_gear/parameters.h"
 #include "geometry/contact/pinion.h"
+#include "geometry/cylindrical/parameters.h"
 #include "geometry/face_gear/parameters.h"
 #include "geometry/modification/modification.h"
 #include "machines/coolant.h"
@@ -127,7 +128,7 @@ using KeyPositions = std::map<std::string, SourcePosition, std::less<>>;
 struct Job {
   std::string file;  ///< path as given on the command line
   std::string name;
-  std::variant<face_gear::FaceGearParameters, bevel_gear::BevelGearParameters> gear;
+  std::variant<face_gear::FaceGearParameters, bevel_gear::BevelGearParameters, cylindrical::CylindricalParameters> gear;
   MachineChoice machine;
   std::optional<joints::Setup> setup;  ///< present in every milling job
   std::vector<tool::ToolAssembly> tools;
@@ -153,6 +154,9 @@ struct Job {
   }
   [[nodiscard]] const bevel_gear::BevelGearParameters* bevel_gear() const {
     return std::get_if<bevel_gear::BevelGearParameters>(&gear);
+  }
+  [[nodiscard]] const cylindrical::CylindricalParameters* cylindrical_gear() const {
+    return std::get_if<cylindrical::CylindricalParameters>(&gear);
   }
 };
 

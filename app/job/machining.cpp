@@ -152,7 +152,8 @@ void check_allowance(toml::TableReader& table, double allowance_mm) {
                  allowance_mm, kLeastAllowance);
 }
 
-path::MillingOperation read_ball_operation(toml::TableReader& table, path::OperationType type) {
+path::MillingOperation read_ball_operation(toml::TableReader& table, path::OperationType type,
+                                           const OperationContext& context) {
   path::MillingOperation operation;
   if (type == path::OperationType::roughing) {
     operation.step_down_mm = table.number("step_down", kStep).value_or(0);
@@ -161,6 +162,9 @@ path::MillingOperation read_ball_operation(toml::TableReader& table, path::Opera
     operation.regions = read_regions(table);
     read_scallop(table, operation);
     read_tool_axis(table, operation);
+    for (const char* key : {"tool_axis", "tool_axis_plus", "tool_axis_minus"})
+      if (!context.teeth_along_radii && table.has(key))
+        table.refuse(key, "{} counts the radii of a face gear: leave it out, the axis is chosen", key);
   }
   if (type != path::OperationType::finishing)
     operation.allowance_mm = table.number("allowance", kAllowance).value_or(0);
@@ -236,9 +240,9 @@ void compare_with_tool(toml::TableReader& table, const path::MillingOperation& o
 
 }  // namespace
 
-path::MillingOperation read_operation(toml::TableReader& table, const std::vector<tool::ToolAssembly>& tools,
-                                      bool bevel_gear) {
-  const OperationWord* word = read_type(table, bevel_gear);
+path::MillingOperation read_operation(toml::TableReader& table, const OperationContext& context) {
+  const std::vector<tool::ToolAssembly>& tools = context.tools;
+  const OperationWord* word = read_type(table, context.bevel_gear);
   path::MillingOperation operation;
   const tool::ToolAssembly* tool = nullptr;
   if (const auto number = table.integer("tool", kToolNumber)) {
@@ -256,7 +260,7 @@ path::MillingOperation read_operation(toml::TableReader& table, const std::vecto
   if (word->type == path::OperationType::finger_roughing)
     operation.ridge_mm = table.number("ridge", {0.001, 10, " mm"}).value_or(0);
   else if (word->type == path::OperationType::line_milling) operation = read_line_operation(table);
-  else if (!word->bevel_gear) operation = read_ball_operation(table, word->type);
+  else if (!word->bevel_gear) operation = read_ball_operation(table, word->type, context);
   if (!word->bevel_gear) operation.climb = table.boolean_or("climb", operation.climb);
   operation.type = word->type;
   operation.speed_rpm = speed;
@@ -417,7 +421,7 @@ VerifySettings read_verify(toml::TableReader& table, bool bevel) {
   if (!bevel) verify.unreached_mm = table.optional_number("unreached", {0, 50, " mm"});
   else if (table.misplaced("unreached"))
     table.refuse("unreached",
-                 "unreached is asked of the ball that finishes a face gear: what a finger mill leaves is its ridge");
+                 "unreached is asked of the ball that finishes a gear: what a finger mill leaves is its ridge");
   table.finish();
   return verify;
 }

@@ -24,10 +24,14 @@ struct ToolContext {
 [[nodiscard]] tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& context,
                                            std::vector<std::string>& warnings);
 
-/// One [[operation]]; its `tool` becomes an index into `tools`.
-/// @param bevel_gear  which operations fit: finger operations for bevel gears, ball operations for face gears
-[[nodiscard]] path::MillingOperation read_operation(toml::TableReader& table,
-                                                    const std::vector<tool::ToolAssembly>& tools, bool bevel_gear);
+/// What an [[operation]] is read in.
+struct OperationContext {
+  const std::vector<tool::ToolAssembly>& tools;
+  bool bevel_gear = false;        ///< finger operations; else those of ball mills and sides of mills
+  bool teeth_along_radii = true;  ///< as those of a face gear: `tool_axis` counts them
+};
+/// One [[operation]]; its `tool` becomes an index into the tools.
+[[nodiscard]] path::MillingOperation read_operation(toml::TableReader& table, const OperationContext& context);
 
 /// Refused, at the operations: regions that no finishing operation covers, where anything finishes at all.
 void check_regions(toml::TableReader& root, const std::vector<path::MillingOperation>& operations);

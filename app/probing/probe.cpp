@@ -61,6 +61,11 @@ std::vector<Diagnostic> make_part(Inputs& in) {
     in.part = std::make_unique<inspection::TouchedBevelGear>(*in.bevel_gear);
     return {};
   }
+  if (in.job.cylindrical_gear())
+    return {fail_at(in.job.where("gear.type"),
+                    "type = \"{}\": probing is not there yet for it; it touches face_gear and "
+                    "equal_base_circle_bevel_gear",
+                    in.job.gear_type())};
   auto gear = process::make_face_gear(in.job);
   if (auto* errors = gear.refused()) return std::move(*errors);
   in.face_gear = std::move(gear).value();

@@ -102,6 +102,19 @@ ValueOrErrors<bevel_gear::BevelGear> make_bevel_gear(const job::Job& job) {
   return errors;
 }
 
+ValueOrErrors<cylindrical::CylindricalGear> make_cylindrical_gear(const job::Job& job) {
+  const cylindrical::CylindricalParameters* parameters = job.cylindrical_gear();
+  if (!parameters)
+    return std::vector{
+        fail_at(job.where("gear.type"), "type = \"{}\", but this command needs a cylindrical_gear", job.gear_type())};
+  auto made = cylindrical::CylindricalGear::make(*parameters);
+  if (auto* gear = made.value_if()) return std::move(*gear);
+  std::vector<Diagnostic> errors;
+  for (auto& refusal : made.error())
+    errors.push_back(located(job, "gear." + refusal.key, std::move(refusal.diagnostic)));
+  return errors;
+}
+
 namespace {
 
 /// What has no tilted planes, and what can be done instead.

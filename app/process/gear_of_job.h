@@ -7,6 +7,7 @@
 
 #include "app/job/job.h"
 #include "geometry/bevel_gear/gear.h"
+#include "geometry/cylindrical/gear.h"
 #include "geometry/face_gear/gear.h"
 #include "machines/machine.h"
 
@@ -22,6 +23,10 @@ using ValueOrErrors = Expected<T, std::vector<Diagnostic>>;
 /// The bevel gear of the job, as its finishing mill makes it (the tool of the last finger_finishing; without one the
 /// first finger mill). Refused: a face gear; everything that BevelGear::make refuses, each with its place.
 [[nodiscard]] ValueOrErrors<bevel_gear::BevelGear> make_bevel_gear(const job::Job& job);
+
+/// The cylindrical gear of the job. Refused: a gear of another type; everything that CylindricalGear::make refuses,
+/// each with its place.
+[[nodiscard]] ValueOrErrors<cylindrical::CylindricalGear> make_cylindrical_gear(const job::Job& job);
 
 /// What a face gear alone can do is refused to a gear of another type.
 [[nodiscard]] Diagnostic needs_face_gear(const job::Job& job);

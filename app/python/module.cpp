@@ -13,9 +13,11 @@
 #include "app/commands/run.h"
 #include "app/job/file.h"
 #include "app/process/bevel/files.h"
+#include "app/process/cylinder/limits.h"
 #include "app/process/gear_of_job.h"
 #include "app/report/limits/json.h"
 #include "geometry/base/inputs_read.h"
+#include "geometry/cylindrical/part.h"
 #include "geometry/face_gear/part.h"
 #include "geometry/inspection/bevel_grid.h"
 
@@ -103,24 +105,32 @@ class Gear {
  public:
   explicit Gear(const std::filesystem::path& file) : job_(value_or_raise(job::read_job_file(file.string()))) {
     if (job_.face_gear()) face_ = value_or_raise(process::make_face_gear(job_));
-    else bevel_ = value_or_raise(process::make_bevel_gear(job_));
+    else if (job_.bevel_gear()) bevel_ = value_or_raise(process::make_bevel_gear(job_));
+    else cylinder_ = value_or_raise(process::make_cylindrical_gear(job_));
   }
 
   [[nodiscard]] std::string name() const { return job_.name; }
   [[nodiscard]] std::string type() const { return job_.gear_type(); }
-  [[nodiscard]] int teeth() const { return face_ ? face_->parameters().teeth : bevel_->parameters().teeth; }
-  [[nodiscard]] std::vector<std::string> warnings() const { return face_ ? face_->warnings() : bevel_->warnings(); }
+  [[nodiscard]] int teeth() const {
+    return std::visit([](const auto& gear) { return gear.teeth; }, job_.gear);
+  }
+  [[nodiscard]] std::vector<std::string> warnings() const {
+    return face_ ? face_->warnings() : bevel_ ? bevel_->warnings() : std::vector<std::string>();
+  }
   [[nodiscard]] py::object limits() const {
-    return from_json(face_ ? limits::limits_json(*face_) : bevel::limits_json(*bevel_));
+    return from_json(face_    ? limits::limits_json(*face_)
+                     : bevel_ ? bevel::limits_json(*bevel_)
+                              : cylinder::limits_json(*cylinder_));
   }
 
   [[nodiscard]] std::vector<Grid> flanks(std::optional<int> rows, std::optional<int> columns,
                                          std::optional<double> margin) const {
-    const inspection::InspectionOptions usual = face_ ? inspection::InspectionOptions{} : inspection::kBevelInspection;
+    const inspection::InspectionOptions usual = bevel_ ? inspection::kBevelInspection : inspection::InspectionOptions{};
     const inspection::InspectionOptions options{rows.value_or(usual.rows), columns.value_or(usual.columns),
                                                 margin.value_or(usual.margin)};
-    if (face_) {
-      const auto points = value_or_raise(inspection::inspection_grid(drawn_solid(*face_), options));
+    if (!bevel_) {
+      const auto points =
+          value_or_raise(inspection::inspection_grid(face_ ? drawn_solid(*face_) : drawn_solid(*cylinder_), options));
       return grids_of(points, options, [](int side) { return py::int_(side); });
     }
     const auto points = value_or_raise(inspection::bevel_inspection_grid(*bevel_, options));
@@ -133,6 +143,7 @@ class Gear {
   job::Job job_;
   std::optional<face_gear::FaceGear> face_;
   std::optional<bevel_gear::BevelGear> bevel_;
+  std::optional<cylindrical::CylindricalGear> cylinder_;
 };
 
 /// What a run found out, and where its files are.

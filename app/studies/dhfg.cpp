@@ -144,8 +144,7 @@ process::ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const 
   std::vector<std::string> warnings;  // of tools: a study has no place for them
   const job::ToolContext context{nullptr, std::filesystem::path(file).parent_path().string()};
   for (auto& table : root.tables("tool")) study.tools.push_back(job::read_tool(table, context, warnings));
-  for (auto& table : root.tables("operation"))
-    study.operations.push_back(job::read_operation(table, study.tools, false));
+  for (auto& table : root.tables("operation")) study.operations.push_back(job::read_operation(table, {study.tools}));
   root.finish();
   if (!findings.errors.empty()) return std::move(findings.errors);
   return study;

@@ -13,8 +13,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 using modification::Modification;
 
-std::vector<Modification>& of_gear(job::Job& job) {
-  return std::visit([](auto& gear) -> std::vector<Modification>& { return gear.modifications; }, job.gear);
+/// Null: this gear type has none.
+std::vector<Modification>* of_gear(job::Job& job) {
+  return std::visit(
+      [](auto& gear) -> std::vector<Modification>* {
+        if constexpr (requires { gear.modifications; }) return &gear.modifications;
+        else return nullptr;
+      },
+      job.gear);
 }
 
 /// The job with what was found behind its lists, as far as it has keys for it.
@@ -24,8 +30,8 @@ job::Job with_found(const job::Job& job, const Optimised& found) {
        {std::pair(&found.found_on.on_gear, &found.gear), {&found.found_on.on_pinion, &found.pinion}}) {
     if (!where->in_job || list->empty()) continue;
     if (where->table != "gear" && !changed.contact) changed.contact.emplace();
-    auto& of_job = where->table == "gear" ? of_gear(changed) : changed.contact->modifications;
-    of_job.insert(of_job.end(), list->begin(), list->end());
+    auto* of_job = where->table == "gear" ? of_gear(changed) : &changed.contact->modifications;
+    if (of_job) of_job->insert(of_job->end(), list->begin(), list->end());
   }
   return changed;
 }
@@ -64,8 +70,10 @@ Result<std::string> job_with_keys(const job::Job& job, const Optimised& found, c
            found.keys.substr(found.keys.empty() ? 0 : 1);
   auto read = job::parse_job(whole, file);
   job::Job wanted = with_found(job, found);
-  if (auto* parsed = read.value_if(); parsed != nullptr && parsed->contact && same(of_gear(*parsed), of_gear(wanted)) &&
-                                      same(parsed->contact->modifications, wanted.contact->modifications))
+  auto* parsed = read.value_if();
+  const auto *there = parsed ? of_gear(*parsed) : nullptr, *asked = of_gear(wanted);
+  if (there && asked && same(*there, *asked) && parsed->contact &&
+      same(parsed->contact->modifications, wanted.contact->modifications))
     return whole;
   return fail_at(job.where("gear"),
                  "--write: the job does not take the keys at its end: modifications must be written "

@@ -9,6 +9,7 @@
 #include "app/process/face/contact.h"
 #include "app/process/face/shaped_flanks.h"
 #include "app/process/face/surface_files.h"
+#include "app/process/milled/bodies.h"
 #include "app/process/milled/milling.h"
 #include "app/report/limits/chart.h"
 #include "app/report/page/tool_body.h"
@@ -18,7 +19,6 @@
 #include "cam/rest/toothed_blank.h"
 #include "geometry/exchange/tooth_shell.h"
 #include "geometry/face_gear/part.h"
-#include "geometry/mesh/tooth_mesh.h"
 
 namespace toothpath::face {
 namespace {
@@ -35,9 +35,6 @@ std::string gear_words(const face_gear::FaceGearParameters& p) {
         zone.helix_angle_rad == 0 ? "spur" : fmt::format("shaper helix {:g} deg", degrees(zone.helix_angle_rad)));
   return text;
 }
-
-constexpr double kSolidSag = 0.02;    // mm
-constexpr double kPictureSag = 0.02;  // of the module
 
 /// Modifications that bend a flank or a fillet so hollow that the ball of an operation no longer fits, where it would
 /// fit the plain one.
@@ -71,7 +68,8 @@ class FaceMilling final : public milled::Milling {
  public:
   FaceMilling(const job::Job& job, const machines::Machine& machine, const face_gear::FaceGear& gear,
               const proof::ProofLimits& limits, const process::FlankGrid& grid)
-      : Milling(job, machine, analytic::GearDistance(face_gear::part_of(gear), ball::reach_of(job.tools)), body_of(gear), limits, grid),
+      : Milling(job, machine, analytic::GearDistance(face_gear::part_of(gear), ball::reach_of(job.tools)),
+                body_of(gear), limits, grid),
         job_(job),
         gear_(gear) {}
 
@@ -127,26 +125,15 @@ class FaceProcess final : public process::GearProcess {
     return out;
   }
   [[nodiscard]] Result<process::FinishedGear> solid() const override {
-    const auto pitch = mesh::mesh_tooth_space(drawn_solid(gear_), kSolidSag);
-    if (!pitch) return process::located(job_, "gear", pitch.error());
-    process::FinishedGear out{
-        mesh::join_copies(*pitch), {}, [root = gear_.lowest_root()](const Vec3& p) { return p.z() > root; }};
-    out.teeth.resize(out.mesh.vertices.size());
-    for (std::size_t t = 0; t < out.mesh.triangles.size(); ++t)
-      if (pitch->tags[t % pitch->tags.size()].patch != tooth_space::Piece::body)
-        for (const auto vertex : out.mesh.triangles[t]) out.teeth[static_cast<std::size_t>(vertex)] = true;
-    return out;
+    auto made = milled::finished_gear(drawn_solid(gear_));
+    if (!made) return process::located(job_, "gear", made.error());
+    return made;
   }
-  [[nodiscard]] Result<mesh::TriangleMesh> mesh() const override {
-    const auto pitch = mesh::mesh_tooth_space(drawn_solid(gear_), kStlSag);
-    if (!pitch) return pitch.error();
-    return mesh::join_copies(*pitch);
-  }
+  [[nodiscard]] Result<mesh::TriangleMesh> mesh() const override { return milled::gear_mesh(drawn_solid(gear_)); }
   [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh(process::FacetSize size) const override {
-    const double picture = kPictureSag * gear_.parameters().module_mm;
-    auto pitch = mesh::mesh_tooth_space(drawn_solid(gear_), size == process::FacetSize::picture ? picture : kStlSag);
+    auto pitch = milled::pitch_mesh(drawn_solid(gear_), size);
     if (!pitch) return process::located(job_, "gear", pitch.error());
-    return std::move(pitch->mesh);
+    return pitch;
   }
   [[nodiscard]] rest::Blank blank() const override {
     return rest::blank_of(drawn_solid(gear_), gear_.parameters().allowance_top_mm);

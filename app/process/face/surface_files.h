@@ -11,8 +11,6 @@
 
 namespace toothpath::face {
 
-inline constexpr double kStlSag = 0.01;  ///< mm, of the facets of gear.stl
-
 /// Writes limits.json, limits.html, limits.svg (limits_0.svg, limits_1.svg with two zones), inspection.csv,
 /// inspection.dmi, gear.stl (all teeth, sag at most 0.01 mm) and tooth.vtp (one pitch, sag at most 0.002 mm, with the
 /// number of the patch at every point) and appends their names to `files`.

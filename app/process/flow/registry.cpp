@@ -1,6 +1,7 @@
 #include "app/process/flow/registry.h"
 
 #include "app/process/bevel/process.h"
+#include "app/process/cylinder/process.h"
 #include "app/process/face/process.h"
 
 namespace toothpath::flow {
@@ -12,6 +13,7 @@ using Made = process::ValueOrErrors<std::unique_ptr<process::GearProcess>>;
 // compile.
 Made process_of(const face_gear::FaceGearParameters&, const job::Job& job) { return face::make_process(job); }
 Made process_of(const bevel_gear::BevelGearParameters&, const job::Job& job) { return bevel::make_process(job); }
+Made process_of(const cylindrical::CylindricalParameters&, const job::Job& job) { return cylinder::make_process(job); }
 
 }  // namespace
 

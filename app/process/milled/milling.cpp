@@ -86,7 +86,7 @@ Status Milling::plan(app::StageClock& clock, app::Progress& progress) {
   options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
   auto planned = clock.run("plan", [&] {
     return plan::plan_milling(part_, job_.tools, job_.operations, options,
-                                [&](const std::string& text) { progress.show(text); });
+                              [&](const std::string& text) { progress.show(text); });
   });
   if (auto* refusal = planned.refused()) return process::located(job_, refusal->key, std::move(refusal->diagnostic));
   plan_ = std::move(planned).value();
@@ -131,9 +131,9 @@ rest::Excess Milling::roughed() const {
   std::vector<rest::Excess> removed;
   for (const path::ClPath& path : plan_.paths) {
     if (job_.operations[std::size_t(path.operation)].type != roughing()) continue;
-    const auto one =
-        std::make_shared<const cut::Removed>(analytic::GougeCheck::motions_of(path),
-                                             tool::proof_tool(job_.tools[std::size_t(path.tool)]), part_.part().highest_z());
+    const auto one = std::make_shared<const cut::Removed>(analytic::GougeCheck::motions_of(path),
+                                                          tool::proof_tool(job_.tools[std::size_t(path.tool)]),
+                                                          part_.part().highest_z());
     removed.emplace_back([one](const Vec3& p, double cap) { return one->excess(p, cap); });
   }
   return rest::excess_of(std::move(removed));

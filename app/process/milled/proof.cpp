@@ -360,8 +360,8 @@ void MilledCheck::judge_load(std::span<const path::ToolMotion> one_space, std::v
       if (m.operation == int(n)) motions.push_back(m);
     if (motions.empty()) return;  // told elsewhere; what the next ones meet is not known
     const tool::Profile mill = tool::profile_of(tool);
-    const cut::EngagementQuery stock{mill, tool_of(int(n)).cutting,    before, body_.in_blank,
-                                      part_.part().highest_z(), 1, part_.part().chart()};
+    const cut::EngagementQuery stock{mill, tool_of(int(n)).cutting, before, body_.in_blank, part_.part().highest_z(),
+                                     1,    part_.part().chart()};
     const cut::Overload load = cut::overload_along(
         motions, stock,
         {asked.operations[n].feed_mm_min, op.step_down_mm, ball::stock_before(job_.operations, job_.tools, n)});

@@ -31,11 +31,14 @@ class PartDrawing {
       : setup_(setup), part_(part), machine_(machine), at_(setup.origin_mm) {
     x_low_ = std::min(at_.x() - part.outer_radius, setup.work_offset_at_mm.x());
     x_high_ = std::max(at_.x() + part.outer_radius, setup.work_offset_at_mm.x());
-    levels_ = {{"tooth tops", z_of(part.tooth_top)},
-               {"deepest root", z_of(part.root)},
-               {"under side", z_of(part.bottom)},
-               {"gear origin", at_.z(), "#a02020"},
-               {setup.work_offset + " zero", setup.work_offset_at_mm.z(), "#0b4f9e"}};
+    if (part.around)
+      levels_ = {{"end face, gear Z " + millimetres(part.tooth_top), z_of(part.tooth_top)},
+                 {"end face, gear Z " + millimetres(part.bottom), z_of(part.bottom)}};
+    else
+      levels_ = {
+          {"tooth tops", z_of(part.tooth_top)}, {"deepest root", z_of(part.root)}, {"under side", z_of(part.bottom)}};
+    levels_.push_back({"gear origin", at_.z(), "#a02020"});
+    levels_.push_back({setup.work_offset + " zero", setup.work_offset_at_mm.z(), "#0b4f9e"});
     for (const auto& axis : machine.chain.table) {
       if (is_upright(axis)) continue;
       x_low_ = std::min(x_low_, axis.point_mm.x());
@@ -84,7 +87,7 @@ class PartDrawing {
   }
   void body() {
     const double r = part_.outer_radius;
-    box(at_.x() - r, at_.x() + r, z_of(part_.root), z_of(part_.bottom), "#ddd");
+    box(at_.x() - r, at_.x() + r, z_of(part_.around ? part_.tooth_top : part_.root), z_of(part_.bottom), "#ddd");
     for (const double side : {-1.0, 1.0}) {
       const double a = at_.x() + side * part_.inner_radius, b = at_.x() + side * r;
       box(std::min(a, b), std::max(a, b), z_of(part_.tooth_top), z_of(part_.root), "#9ab");
@@ -137,7 +140,8 @@ class PartDrawing {
   /// Diameters below the part.
   void across() {
     dimension(part_.outer_radius, kTop + height_ + 5.5, "outer diameter");
-    if (part_.inner_radius > 0) dimension(part_.inner_radius, kTop + height_ + 10.5, "teeth begin at diameter");
+    if (part_.inner_radius > 0)
+      dimension(part_.inner_radius, kTop + height_ + 10.5, part_.around ? "root diameter" : "teeth begin at diameter");
   }
   void dimension(double radius, double y, const char* name) {
     const double a = px(at_.x() - radius), b = px(at_.x() + radius), from = py(z_of(part_.bottom));

@@ -63,8 +63,9 @@ void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part,
   sheet.heading("Gear, machine and work offset");
   sheet.begin_table({"what", "value"});
   sheet.row({"gear", part.words});
-  sheet.row({"heights, gear Z", fmt::format("tooth tops {}, deepest root {}, both from the gear origin",
-                                            millimetres(part.tooth_top), millimetres(part.root))});
+  sheet.row({"heights, gear Z", fmt::format("{} {}, {} {}, both from the gear origin",
+                                            part.around ? "upper end face" : "tooth tops", millimetres(part.tooth_top),
+                                            part.around ? "lower end face" : "deepest root", millimetres(part.root))});
   sheet.row({"machine", fmt::format("{} ({})", machine.name, job.machine.file)});
   sheet.row({"control", machine.dialect});
   sheet.row({"program", report.program_file.empty() ? "none: the run is not verified" : report.program_file});
@@ -77,8 +78,9 @@ void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part,
     if (const std::string notes = tcp_text(machine); !notes.empty()) sheet.row({"TCP of the control", notes});
   sheet.row({"gear origin, machine", coordinates(setup.origin_mm)});
   sheet.row({"gear origin, " + setup.work_offset, coordinates(setup.origin_mm - setup.work_offset_at_mm)});
-  sheet.row({"gear axis", setup.axis_up ? "up: teeth towards the spindle, gear X along machine X"
-                                        : "down: turned by 180 deg about X"});
+  sheet.row({"gear axis", !setup.axis_up ? "down: turned by 180 deg about X"
+                          : part.around  ? "up: gear Z along machine Z, gear X along machine X"
+                                         : "up: teeth towards the spindle, gear X along machine X"});
   if (!setup.measured_file.empty())
     sheet.row({"part", fmt::format("stands as measured in {}: teeth turned by {:.4f} deg about gear Z",
                                    setup.measured_file, degrees(setup.clocking_rad))});

@@ -14,6 +14,9 @@ struct PartOutline {
   double inner_radius = 0, outer_radius = 0;
   double tooth_top = 0, root = 0, bottom = 0;  ///< z
   std::string words;                           ///< what the gear is, as on its drawing
+  /// Teeth stand outwards, from inner_radius (their roots) to outer_radius, between tooth_top and root = bottom, which
+  /// are the end faces of the gear; else they stand upright.
+  bool around = false;
 };
 
 /// Machine, work offset, tools with lengths and run times, operations, axis ranges, every assumed value, warnings, and
