@@ -7,6 +7,7 @@
 #include "cam/cut/unreached.h"
 #include "cam/plan/first_ball.h"
 #include "geometry/base/angle.h"
+#include "geometry/cylindrical/part.h"
 #include "geometry/face_gear/part.h"
 
 namespace toothpath::proposal {
@@ -20,6 +21,14 @@ bool complete(const Wishes& wishes) {
     return q.what == Quantity::inner || q.what == Quantity::outer || !wishes.gear || !belongs(q, *wishes.gear) ||
            wishes[q.what];
   });
+}
+
+void add_balls(std::shared_ptr<const tooth_space::ToothedPart> gear, FaceFacts& facts) {
+  const double m = gear->module_mm(), reach = 3 * m;
+  const analytic::GearDistance part(std::move(gear), reach);
+  if (part.refusal()) return;
+  facts.largest_ball = 2 * cut::largest_reaching_ball(part, 1.5 * m).radius_mm;
+  facts.first_ball = plan::first_ball_mm(part, kRoughingAllowance * m, reach);
 }
 
 }  // namespace
@@ -69,8 +78,20 @@ bevel_gear::BevelGearParameters bevel_parameters(const Wishes& wishes) {
   return p;
 }
 
+cylindrical::CylindricalParameters cylindrical_parameters(const Wishes& wishes) {
+  cylindrical::CylindricalParameters p;
+  p.teeth = static_cast<int>(wishes.at(Quantity::teeth));
+  p.module_mm = wishes.at(Quantity::module);
+  p.pressure_angle_rad = radians(wishes.at(Quantity::pressure_angle));
+  p.profile_shift = wishes.at(Quantity::profile_shift);
+  const double half = 0.5 * wishes.at(Quantity::face_width);
+  p.zones = {{radians(wishes.at(Quantity::helix)), -half, half}};
+  return p;
+}
+
 std::optional<FaceRange> face_range(const Wishes& wishes) {
-  if (!wishes.gear || *wishes.gear == Gear::bevel_herringbone || !complete(wishes)) return std::nullopt;
+  if (!wishes.gear || *wishes.gear == Gear::bevel_herringbone || *wishes.gear == Gear::cylindrical || !complete(wishes))
+    return std::nullopt;
   const face_gear::FaceGearParameters p = face_parameters(wishes);
   FaceRange range{0, 1e9, 1e9, ""};
   for (const int hand : {-1, 1}) {
@@ -94,11 +115,14 @@ FaceFacts face_facts(const face_gear::FaceGear& gear) {
     for (const double r : {ring.zone.inner_radius_mm, ring.zone.outer_radius_mm})
       if (const auto root = face_gear::root_height(ring.surface, r))
         facts.depth = std::max(facts.depth, ring.surface.z_tip(r) - *root);
-  const double m = gear.parameters().module_mm, reach = 3 * m;
-  const analytic::GearDistance part(face_gear::part_of(gear), reach);
-  if (part.refusal()) return facts;
-  facts.largest_ball = 2 * cut::largest_reaching_ball(part, 1.5 * m).radius_mm;
-  facts.first_ball = plan::first_ball_mm(part, kRoughingAllowance * m, reach);
+  add_balls(face_gear::part_of(gear), facts);
+  return facts;
+}
+
+FaceFacts cylindrical_facts(const cylindrical::CylindricalGear& gear) {
+  FaceFacts facts;
+  facts.depth = 0.5 * (gear.tip_diameter() - gear.root_diameter());
+  add_balls(cylindrical::part_of(gear), facts);
   return facts;
 }
 

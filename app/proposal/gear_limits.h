@@ -5,6 +5,7 @@
 
 #include "app/proposal/wishes.h"
 #include "geometry/bevel_gear/parameters.h"
+#include "geometry/cylindrical/gear.h"
 #include "geometry/face_gear/gear.h"
 
 namespace toothpath::proposal {
@@ -22,11 +23,13 @@ struct FaceRange {
 /// The same with its ends; a double helical gear has a groove in its middle.
 [[nodiscard]] face_gear::FaceGearParameters whole_face_parameters(const Wishes& wishes);
 [[nodiscard]] bevel_gear::BevelGearParameters bevel_parameters(const Wishes& wishes);
+/// One zone about z = 0.
+[[nodiscard]] cylindrical::CylindricalParameters cylindrical_parameters(const Wishes& wishes);
 
 /// Nothing: no tooth has room, or numbers are missing.
 [[nodiscard]] std::optional<FaceRange> face_range(const Wishes& wishes);
 
-/// Of a face gear that can be made, mm.
+/// Of a gear that ball mills can make, mm.
 struct FaceFacts {
   double depth = 0;         ///< of the tooth spaces, the deepest
   double largest_ball = 0;  ///< diameter of the largest ball that reaches all; 0: none, the fillet is sharp
@@ -37,5 +40,6 @@ struct FaceFacts {
   [[nodiscard]] double most_roughing_mm() const { return 0.95 * first_ball; }
 };
 [[nodiscard]] FaceFacts face_facts(const face_gear::FaceGear& gear);
+[[nodiscard]] FaceFacts cylindrical_facts(const cylindrical::CylindricalGear& gear);
 
 }  // namespace toothpath::proposal

@@ -55,6 +55,24 @@ std::string face_text(const Wishes& wishes) {
   return text;
 }
 
+std::string cylindrical_text(const Wishes& wishes) {
+  const cylindrical::CylindricalParameters p = cylindrical_parameters(wishes);
+  std::string text = "\n[gear]\ntype = \"cylindrical_gear\"\n";
+  text += line("teeth", fmt::format("{}", p.teeth));
+  text += line("module", real(p.module_mm));
+  text += line("module_plane", "\"normal\"", "\"normal\" or \"transverse\": for module and pressure angle");
+  text += line("pressure_angle", real(wishes.at(Quantity::pressure_angle)));
+  text += line("profile_shift", real(p.profile_shift), "in modules");
+  text += line("addendum_coefficient", real(p.addendum_coefficient), "of the basic rack, in modules");
+  text += line("dedendum_coefficient", real(p.dedendum_coefficient));
+  text += line("root_radius_coefficient", real(p.root_radius_coefficient), "rounding of the rack's tip: the fillet");
+  text += "\n[[gear.zone]]                    # one ring of teeth\n";
+  text += line("helix_angle", real(degrees(p.zones.front().helix_angle_rad)), "above 0 is right hand");
+  text += line("from", real(p.zones.front().from_mm), "along the gear axis");
+  text += line("to", real(p.zones.front().to_mm));
+  return text;
+}
+
 std::string bevel_text(const Wishes& wishes) {
   const bevel_gear::BevelGearParameters p = bevel_parameters(wishes);
   std::string text = "\n[gear]\ntype = \"equal_base_circle_bevel_gear\"\n";
@@ -215,7 +233,9 @@ std::string shaping_text() {
 
 std::string gear_text(const std::string& name, const Wishes& wishes) {
   return fmt::format("schema = 1\nname = {}\n", toml::quoted(name)) +
-         (wishes.gear == Gear::bevel_herringbone ? bevel_text(wishes) : face_text(wishes));
+         (wishes.gear == Gear::bevel_herringbone ? bevel_text(wishes)
+          : wishes.gear == Gear::cylindrical     ? cylindrical_text(wishes)
+                                                 : face_text(wishes));
 }
 
 std::string job_text(const Draft& draft, const LibraryWords& library, const std::string& schema) {
@@ -227,7 +247,9 @@ std::string job_text(const Draft& draft, const LibraryWords& library, const std:
   text += "\n[setup]\n";
   text += line("origin", vector_text(draft.place.origin_mm), "gear frame in machine coordinates, all rotaries at zero");
   text += line("axis", bevel ? "\"down\"" : "\"up\"",
-               bevel ? "gear z points down: apex on top" : "teeth towards the spindle");
+               bevel                                    ? "gear z points down: apex on top"
+               : draft.wishes.gear == Gear::cylindrical ? "the machine lays the axis down: the tool comes in radially"
+                                                        : "teeth towards the spindle");
   text += line("work_offset", toml::quoted(draft.work_offset), "the program counts from it");
   text += line("work_offset_at", vector_text(draft.place.origin_mm));
   const auto tool = [&](const tool::ToolAssembly& t) {

@@ -77,6 +77,15 @@ std::vector<ToolPlace> face_places(double inner_mm, double outer_mm, double z_lo
   return places;
 }
 
+std::vector<ToolPlace> cylinder_places(double z_low_mm, double z_high_mm, double inner_mm, double outer_mm) {
+  std::vector<ToolPlace> places;
+  for (const double z : {z_low_mm, z_high_mm})
+    for (const double r : {inner_mm, outer_mm + kApproach})
+      for (const double aside : kLeansAside)
+        places.push_back({Vec3(r, 0, z), Vec3(1, std::tan(radians(aside)), 0).normalized()});
+  return places;
+}
+
 std::vector<ToolPlace> finger_places(double inner_mm, double outer_mm, double pitch_angle_rad, double depth_mm) {
   std::vector<ToolPlace> places;
   const double s = std::sin(pitch_angle_rad), c = std::cos(pitch_angle_rad);

@@ -37,6 +37,9 @@ struct Place {
 
 /// Places of a tool that mills a face gear: on the teeth and above them, upright and leaning.
 [[nodiscard]] std::vector<ToolPlace> face_places(double inner_mm, double outer_mm, double z_low_mm, double z_high_mm);
+/// The same of a cylindrical gear: the tool comes in along radii, between two heights.
+[[nodiscard]] std::vector<ToolPlace> cylinder_places(double z_low_mm, double z_high_mm, double inner_mm,
+                                                     double outer_mm);
 /// Of a finger mill on a pitch cone: normal to it, between two cone distances and above.
 [[nodiscard]] std::vector<ToolPlace> finger_places(double inner_mm, double outer_mm, double pitch_angle_rad,
                                                    double depth_mm);

@@ -30,7 +30,8 @@ std::string option_of(const std::string& key) {
                                                               {"offset", "--offset"},
                                                               {"helix_angle", "--helix"},
                                                               {"outer_spiral_angle", "--spiral"},
-                                                              {"face_width", "--face-width"}};
+                                                              {"face_width", "--face-width"},
+                                                              {"profile_shift", "--profile-shift"}};
   for (const auto& [part, option] : kOptions)
     if (key.ends_with(part)) return option;
   return "--gear";
@@ -68,6 +69,27 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_face(const Wishes& wishes) 
                  gear.blank_top(),
                  true,
                  face_places(gear.inner_radius(), gear.outer_radius(), gear.lowest_root(), gear.blank_top()),
+                 gear.parameters().teeth};
+  return chosen;
+}
+
+double tip_diameter_mm(const cylindrical::CylindricalParameters& p) {
+  return 2 * cylindrical::InvoluteKernel<double>(p, p.zones.front()).r_a;
+}
+
+Expected<ChosenGear, std::vector<Diagnostic>> choose_cylindrical(const Wishes& wishes) {
+  auto made = cylindrical::CylindricalGear::make(cylindrical_parameters(wishes));
+  if (auto* refusals = made.refused()) return located(std::move(*refusals));
+  const cylindrical::CylindricalGear& gear = made.value();
+  const cylindrical::CylindricalZone& zone = gear.parameters().zones.front();
+  ChosenGear chosen;
+  chosen.diameter_mm = gear.tip_diameter();
+  chosen.facts = cylindrical_facts(gear);
+  chosen.part = {0.5 * gear.tip_diameter(),
+                 zone.from_mm,
+                 zone.to_mm,
+                 true,
+                 cylinder_places(zone.from_mm, zone.to_mm, 0.5 * gear.root_diameter(), 0.5 * gear.tip_diameter()),
                  gear.parameters().teeth};
   return chosen;
 }
@@ -157,11 +179,12 @@ Result<Draft> face_draft(Draft draft, const ChosenMachine& machine, const Chosen
       draft.wishes.route == Route::line ? tool::CutterType::tapered_ball_end_mill : tool::CutterType::ball_end_mill;
   const tool::ToolAssembly* mill = largest(shelf, type, gear.facts.most_finishing_mm(), depth, attempt % 2);
   if (!mill)
-    return fail_as(
-        DiagnosticKind::refused_input,
-        "--tip-radius: the largest ball that reaches all of the fillets and the root has {:.3f} mm, and no {} "
-        "is so small with flutes of {:.2f} mm; a larger rounding of the shaper's tip takes a larger ball",
-        gear.facts.largest_ball, draft.wishes.route == Route::line ? "tapered mill" : "ball mill", depth);
+    return fail_as(DiagnosticKind::refused_input,
+                   "{}: the largest ball that reaches all of the fillets and the root has {:.3f} mm, and no {} "
+                   "is so small with flutes of {:.2f} mm; {} takes a larger ball",
+                   gear.face ? "--tip-radius" : "--module", gear.facts.largest_ball,
+                   draft.wishes.route == Route::line ? "tapered mill" : "ball mill", depth,
+                   gear.face ? "a larger rounding of the shaper's tip" : "a larger module");
   draft.second = *mill;
   draft.depth_mm = depth;
   const tool::ToolAssembly* first =
@@ -206,6 +229,7 @@ Expected<ChosenMachine, std::vector<Diagnostic>> choose_machine(const Wishes& wi
 }
 
 Expected<ChosenGear, std::vector<Diagnostic>> choose_gear(const Wishes& wishes) {
+  if (wishes.gear == Gear::cylindrical) return choose_cylindrical(wishes);
   return wishes.gear == Gear::bevel_herringbone ? choose_bevel(wishes) : choose_face(wishes);
 }
 
@@ -226,6 +250,11 @@ Result<Draft> draft_of(const std::string& name, const Wishes& wishes, const Chos
 
 std::optional<double> least_swing_mm(const Wishes& wishes) {
   if (!wishes.gear) return std::nullopt;
+  if (*wishes.gear == Gear::cylindrical) {
+    for (const Quantity known : {Quantity::teeth, Quantity::module, Quantity::helix, Quantity::profile_shift})
+      if (!wishes[known]) return std::nullopt;
+    return tip_diameter_mm(cylindrical_parameters(wishes));
+  }
   if (*wishes.gear != Gear::bevel_herringbone) {
     const auto end = wishes[Quantity::outer] ? wishes[Quantity::outer] : wishes[Quantity::inner];
     if (end) return 2 * *end;

@@ -27,7 +27,7 @@ struct ChosenMachine {
 struct ChosenGear {
   std::optional<face_gear::FaceGear> face;
   std::optional<bevel_gear::FingerCutterDesign> bevel;
-  FaceFacts facts;   ///< of a face gear that is milled
+  FaceFacts facts;   ///< of a gear that ball mills make
   PartInSpace part;  ///< with its places of the tool
   double diameter_mm = 0;
 };

@@ -10,19 +10,24 @@
 namespace toothpath::proposal {
 namespace {
 
-constexpr std::string_view kGearWords[] = {"face", "double_helical", "offset", "bevel_herringbone"};
+constexpr std::string_view kGearWords[] = {"face", "double_helical", "offset", "bevel_herringbone", "cylindrical"};
 constexpr std::string_view kRouteWords[] = {"ball", "line", "shaped", "finger"};
 constexpr Route kFaceRoutes[] = {Route::line, Route::ball, Route::shaped};
 constexpr Route kDoubleRoutes[] = {Route::line, Route::ball};
 constexpr Route kBevelRoutes[] = {Route::finger};
+constexpr Route kCylindricalRoutes[] = {Route::ball};
 
 constexpr Question kQuestions[] = {
     {Quantity::teeth, "--teeth", "teeth of the gear", {10, 1000}, true},
     {Quantity::mate_teeth, "--mate-teeth", "teeth of the mate", {8, 1000}, true},
     {Quantity::shaper_teeth, "--shaper-teeth", "teeth of the shaper, or of the pinion", {8, 400}, true},
-    {Quantity::module, "--module", "module, transverse (of a bevel gear at the large end)", {0.3, 20, " mm"}, false},
+    {Quantity::module,
+     "--module",
+     "module, transverse (of a bevel gear at the large end, of a cylindrical gear normal)",
+     {0.3, 20, " mm"},
+     false},
     {Quantity::pressure_angle, "--pressure-angle", "pressure angle", {14.5, 30, " deg"}, false},
-    {Quantity::helix, "--helix", "helix angle of the shaper", {-45, 45, " deg"}, false},
+    {Quantity::helix, "--helix", "helix angle of the shaper, or of the cylindrical gear", {-45, 45, " deg"}, false},
     {Quantity::offset, "--offset", "offset of the axes", {-500, 500, " mm"}, false},
     {Quantity::tip_radius,
      "--tip-radius",
@@ -32,7 +37,8 @@ constexpr Question kQuestions[] = {
     {Quantity::inner, "--inner", "inner end of the teeth, radius", {1, 2000, " mm"}, false},
     {Quantity::outer, "--outer", "outer end of the teeth, radius", {1, 2000, " mm"}, false},
     {Quantity::spiral, "--spiral", "spiral angle at the large end", {10, 45, " deg"}, false},
-    {Quantity::face_width, "--face-width", "face width along the pitch cone", {1, 500, " mm"}, false},
+    {Quantity::face_width, "--face-width", "face width, of a bevel gear along the pitch cone", {1, 500, " mm"}, false},
+    {Quantity::profile_shift, "--profile-shift", "profile shift in modules", {-2, 2}, false},
 };
 
 constexpr double kRadiusStep = 0.25;  // mm, of proposed ends
@@ -57,6 +63,12 @@ double helix_with_room(const Wishes& wishes) {
     if (range && range->outer - range->inner > kLeastDoubleWidth * wishes.at(Quantity::module)) return helix;
   }
   return 10.0;
+}
+
+/// The least profile shift without undercut, in steps; 0 where none is needed.
+double least_shift(const Wishes& wishes) {
+  const auto p = cylindrical_parameters(wishes);
+  return std::max(0.0, std::ceil(20 * cylindrical::least_profile_shift(p, p.zones.front())) / 20);
 }
 
 std::optional<double> proposed_end(Quantity quantity, const Wishes& wishes) {
@@ -91,6 +103,7 @@ std::span<const Route> routes_of(Gear gear) {
     case Gear::offset: return kFaceRoutes;
     case Gear::double_helical: return kDoubleRoutes;
     case Gear::bevel_herringbone: return kBevelRoutes;
+    case Gear::cylindrical: return kCylindricalRoutes;
   }
   return {};
 }
@@ -101,20 +114,21 @@ std::string_view word_of(Route route) { return kRouteWords[static_cast<std::size
 std::span<const Question> questions() { return kQuestions; }
 
 bool belongs(const Question& question, Gear gear) {
-  const bool bevel = gear == Gear::bevel_herringbone;
+  const bool bevel = gear == Gear::bevel_herringbone, cylindrical = gear == Gear::cylindrical;
   switch (question.what) {
     case Quantity::teeth:
     case Quantity::module:
     case Quantity::pressure_angle: return true;
     case Quantity::mate_teeth:
-    case Quantity::spiral:
-    case Quantity::face_width: return bevel;
+    case Quantity::spiral: return bevel;
+    case Quantity::face_width: return bevel || cylindrical;
+    case Quantity::profile_shift: return cylindrical;
     case Quantity::offset: return gear == Gear::offset;
-    case Quantity::helix:
+    case Quantity::helix: return !bevel;
     case Quantity::shaper_teeth:
     case Quantity::tip_radius:
     case Quantity::inner:
-    case Quantity::outer: return !bevel;
+    case Quantity::outer: return !bevel && !cylindrical;
   }
   return false;
 }
@@ -133,7 +147,9 @@ std::optional<double> proposed(Quantity quantity, const Wishes& wishes) {
     case Quantity::inner:
     case Quantity::outer: return proposed_end(quantity, wishes);
     case Quantity::spiral: return 30.0;
+    case Quantity::profile_shift: return least_shift(wishes);
     case Quantity::face_width: {
+      if (wishes.gear == Gear::cylindrical) return std::max(1.0, rounded(8 * m, 0.5));
       const double delta = std::atan2(teeth, wishes.at(Quantity::mate_teeth));
       return rounded(0.29 * 0.5 * m * teeth / std::sin(delta), 0.5);
     }

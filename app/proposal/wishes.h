@@ -11,7 +11,7 @@
 
 namespace toothpath::proposal {
 
-enum class Gear : std::uint8_t { face, double_helical, offset, bevel_herringbone };
+enum class Gear : std::uint8_t { face, double_helical, offset, bevel_herringbone, cylindrical };
 enum class Route : std::uint8_t {
   ball,    ///< ball mills alone
   line,    ///< flanks by the side of a tapered mill
@@ -42,8 +42,9 @@ enum class Quantity : std::uint8_t {
   outer,
   spiral,
   face_width,
+  profile_shift,
 };
-inline constexpr std::size_t kQuantities = 12;
+inline constexpr std::size_t kQuantities = 13;
 
 /// mm and deg, as a job says them.
 struct Wishes {
