@@ -155,7 +155,7 @@ TEST(WideBall, LeavesTheCornerAndCutsNothing) {
   EXPECT_GT(cut.unreached.points, 10u);
   EXPECT_GT(cut.unreached.max_height_mm, 0.005);
   EXPECT_TRUE(job.plan.operations.back().corner_passes);
-  const analytic::GougeCheckOptions options{.limits = {}, .rapid_height_mm = job.part->gear().blank_top()};
+  const analytic::GougeCheckOptions options{.limits = {}, .rapid_height_mm = job.gear.blank_top()};
   const analytic::GougeCheck check(*job.part, job.tools, options);
   const auto gouge = check.check(job.motions(), job.tool_of_operation());
   EXPECT_GE(gouge.bound_mm, -cut.operations.back().min_mm);
