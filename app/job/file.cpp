@@ -62,9 +62,9 @@ void read_job(toml::TableReader& root, Job& job) {
   if (auto table = root.table("machine")) job.machine = read_machine_choice(*table);
   if (auto table = root.table("setup")) job.setup = read_setup(*table, job);
   if (auto table = root.table("shaping")) job.shaping = read_shaping(*table);
-  if (job.cylindrical_gear()) {
+  if (!job.face_gear() && !job.bevel_gear()) {
     if (root.misplaced("contact"))
-      root.refuse("contact", "[contact] is not there yet for a cylindrical_gear: leave it out");
+      root.refuse("contact", "[contact] is not there yet for a {}: leave it out", job.gear_type());
   } else if (auto table = root.table("contact")) {
     job.contact = read_contact(*table, job);
   }

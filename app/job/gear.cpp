@@ -122,20 +122,24 @@ face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::Tabl
   return p;
 }
 
-bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear, const std::string& directory) {
-  bevel_gear::BevelGearParameters p;
-  p.teeth = gear.integer("teeth", kTeeth).value_or(0);
+/// The pitch angle itself, or from the teeth of the mate.
+void read_pitch_angle(toml::TableReader& gear, int teeth, double shaft_angle_rad, int& mate_teeth,
+                      double& pitch_angle_rad) {
   const bool mate = gear.has("mate_teeth"), angle = gear.has("pitch_angle");
-  p.shaft_angle_rad = radians(gear.number_or("shaft_angle", kShaftAngle, degrees(p.shaft_angle_rad)));
-  p.mate_teeth = gear.optional_integer("mate_teeth", kMateTeeth).value_or(0);
-  p.pitch_angle_rad = radians(gear.optional_number("pitch_angle", {0.01, 90, " deg"}).value_or(0));
+  mate_teeth = gear.optional_integer("mate_teeth", kMateTeeth).value_or(0);
+  pitch_angle_rad = radians(gear.optional_number("pitch_angle", {0.01, 90, " deg"}).value_or(0));
   gear.relate(toml::KeyRelation::Kind::one_of, "mate_teeth", "pitch_angle");
   if (mate && angle) gear.refuse("pitch_angle", "pitch_angle contradicts mate_teeth: give one of the two");
   if (!mate && !angle) gear.refuse("mate_teeth", "[gear] lacks the key \"mate_teeth\" (or \"pitch_angle\")");
-  if (mate && p.mate_teeth > 0 && p.teeth > 0) {
-    const double sigma = p.shaft_angle_rad;
-    p.pitch_angle_rad = std::atan2(std::sin(sigma), double(p.mate_teeth) / p.teeth + std::cos(sigma));
-  }
+  if (mate && mate_teeth > 0 && teeth > 0)
+    pitch_angle_rad = std::atan2(std::sin(shaft_angle_rad), double(mate_teeth) / teeth + std::cos(shaft_angle_rad));
+}
+
+bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear, const std::string& directory) {
+  bevel_gear::BevelGearParameters p;
+  p.teeth = gear.integer("teeth", kTeeth).value_or(0);
+  p.shaft_angle_rad = radians(gear.number_or("shaft_angle", kShaftAngle, degrees(p.shaft_angle_rad)));
+  read_pitch_angle(gear, p.teeth, p.shaft_angle_rad, p.mate_teeth, p.pitch_angle_rad);
   const auto module = gear.number("outer_transverse_module", kModule);
   p.outer_transverse_module_mm = module.value_or(0);
   p.pressure_angle_rad = radians(gear.number("pressure_angle", kPressureAngle).value_or(0));
@@ -214,6 +218,40 @@ cylindrical::CylindricalParameters read_cylindrical_gear(toml::TableReader& gear
   return p;
 }
 
+straight_bevel::StraightBevelParameters read_straight_bevel_gear(toml::TableReader& gear) {
+  straight_bevel::StraightBevelParameters p;
+  p.teeth = gear.integer("teeth", kTeeth).value_or(0);
+  const bool shaft = gear.has("shaft_angle");
+  const double shaft_angle = radians(gear.number_or("shaft_angle", kShaftAngle, 90));
+  int mate_teeth = 0;
+  read_pitch_angle(gear, p.teeth, shaft_angle, mate_teeth, p.pitch_angle_rad);
+  if (shaft && gear.has("pitch_angle"))
+    gear.refuse("shaft_angle", "shaft_angle contradicts pitch_angle: it goes with mate_teeth");
+  p.outer_transverse_module_mm = gear.number("outer_transverse_module", kModule).value_or(0);
+  p.pressure_angle_rad = radians(gear.number("pressure_angle", kPressureAngle).value_or(0));
+  if (const auto form = gear.word("form", {"octoid", "spherical_involute"}))
+    p.form = *form == "octoid" ? straight_bevel::Form::octoid : straight_bevel::Form::spherical_involute;
+  p.face_width_mm = gear.number("face_width", {kLeastFace, kLength.high, " mm"}).value_or(0);
+  p.addendum_mm = gear.number("addendum", kLength).value_or(0);
+  p.dedendum_mm = gear.number("dedendum", kLength).value_or(0);
+  if (const auto tip = gear.optional_number("tip_angle", {0.01, 170, " deg"})) p.tip_angle_rad = radians(*tip);
+  p.thickness_shift = gear.number_or("thickness_shift", {-0.5, 0.5}, p.thickness_shift);
+  p.fillet_radius_mm = gear.number("fillet_radius", kLength).value_or(0);
+  p.backlash_mm = gear.number_or("backlash", kLengthOrZero, p.backlash_mm);
+  p.bore_diameter_mm = gear.number_or("bore_diameter", kLengthOrZero, p.bore_diameter_mm);
+  optional_cylinder(gear, "hub", p.hub_diameter_mm, p.hub_length_mm);
+  const auto land = gear.optional_number("least_land", kLengthOrZero);
+  const double module = p.outer_transverse_module_mm;
+  if (land && module > 0 && *land >= module)
+    gear.refuse("least_land", "least_land = {} mm is not below outer_transverse_module = {} mm", *land, module);
+  else if (land && module > 0 && *land > 0) p.least_land = *land / module;
+  if (gear.misplaced("modification"))
+    gear.refuse("modification",
+                "[[gear.modification]] is not there yet for a straight_bevel_gear: leave it out, the flanks are plain");
+  gear.finish();
+  return p;
+}
+
 /// [stock] is a table of face gears.
 void refuse_stock(toml::TableReader& root, const Job& job) {
   if (root.misplaced("stock")) root.refuse("stock", "[stock] belongs to face gears; this gear is {}", job.gear_type());
@@ -241,6 +279,11 @@ constexpr GearType kGearTypes[] = {
     {"cylindrical_gear",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
        job.gear = read_cylindrical_gear(gear, job.warnings);
+       refuse_stock(root, job);
+     }},
+    {"straight_bevel_gear",
+     [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
+       job.gear = read_straight_bevel_gear(gear);
        refuse_stock(root, job);
      }},
 };

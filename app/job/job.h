@@ -18,6 +18,7 @@
 #include "geometry/cylindrical/parameters.h"
 #include "geometry/face_gear/parameters.h"
 #include "geometry/modification/modification.h"
+#include "geometry/straight_bevel/parameters.h"
 #include "machines/coolant.h"
 #include "machines/toml/table_reader.h"
 #include "postproc/joints/setup.h"
@@ -128,7 +129,9 @@ using KeyPositions = std::map<std::string, SourcePosition, std::less<>>;
 struct Job {
   std::string file;  ///< path as given on the command line
   std::string name;
-  std::variant<face_gear::FaceGearParameters, bevel_gear::BevelGearParameters, cylindrical::CylindricalParameters> gear;
+  std::variant<face_gear::FaceGearParameters, bevel_gear::BevelGearParameters, cylindrical::CylindricalParameters,
+               straight_bevel::StraightBevelParameters>
+      gear;
   MachineChoice machine;
   std::optional<joints::Setup> setup;  ///< present in every milling job
   std::vector<tool::ToolAssembly> tools;
@@ -157,6 +160,9 @@ struct Job {
   }
   [[nodiscard]] const cylindrical::CylindricalParameters* cylindrical_gear() const {
     return std::get_if<cylindrical::CylindricalParameters>(&gear);
+  }
+  [[nodiscard]] const straight_bevel::StraightBevelParameters* straight_bevel_gear() const {
+    return std::get_if<straight_bevel::StraightBevelParameters>(&gear);
   }
 };
 

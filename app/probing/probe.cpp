@@ -61,7 +61,7 @@ std::vector<Diagnostic> make_part(Inputs& in) {
     in.part = std::make_unique<inspection::TouchedBevelGear>(*in.bevel_gear);
     return {};
   }
-  if (in.job.cylindrical_gear())
+  if (!in.job.face_gear())
     return {fail_at(in.job.where("gear.type"),
                     "type = \"{}\": probing is not there yet for it; it touches face_gear and "
                     "equal_base_circle_bevel_gear",

@@ -102,17 +102,30 @@ ValueOrErrors<bevel_gear::BevelGear> make_bevel_gear(const job::Job& job) {
   return errors;
 }
 
-ValueOrErrors<cylindrical::CylindricalGear> make_cylindrical_gear(const job::Job& job) {
-  const cylindrical::CylindricalParameters* parameters = job.cylindrical_gear();
+namespace {
+
+/// The gear that a type makes of its parameters, or each of its refusals at its place in the job.
+template <typename Gear, typename Parameters>
+ValueOrErrors<Gear> made_of(const job::Job& job, const Parameters* parameters, const char* type) {
   if (!parameters)
     return std::vector{
-        fail_at(job.where("gear.type"), "type = \"{}\", but this command needs a cylindrical_gear", job.gear_type())};
-  auto made = cylindrical::CylindricalGear::make(*parameters);
+        fail_at(job.where("gear.type"), "type = \"{}\", but this command needs a {}", job.gear_type(), type)};
+  auto made = Gear::make(*parameters);
   if (auto* gear = made.value_if()) return std::move(*gear);
   std::vector<Diagnostic> errors;
   for (auto& refusal : made.error())
     errors.push_back(located(job, "gear." + refusal.key, std::move(refusal.diagnostic)));
   return errors;
+}
+
+}  // namespace
+
+ValueOrErrors<cylindrical::CylindricalGear> make_cylindrical_gear(const job::Job& job) {
+  return made_of<cylindrical::CylindricalGear>(job, job.cylindrical_gear(), "cylindrical_gear");
+}
+
+ValueOrErrors<straight_bevel::StraightBevelGear> make_straight_bevel_gear(const job::Job& job) {
+  return made_of<straight_bevel::StraightBevelGear>(job, job.straight_bevel_gear(), "straight_bevel_gear");
 }
 
 namespace {

@@ -9,6 +9,7 @@
 #include "geometry/bevel_gear/gear.h"
 #include "geometry/cylindrical/gear.h"
 #include "geometry/face_gear/gear.h"
+#include "geometry/straight_bevel/gear.h"
 #include "machines/machine.h"
 
 namespace toothpath::process {
@@ -27,6 +28,9 @@ using ValueOrErrors = Expected<T, std::vector<Diagnostic>>;
 /// The cylindrical gear of the job. Refused: a gear of another type; everything that CylindricalGear::make refuses,
 /// each with its place.
 [[nodiscard]] ValueOrErrors<cylindrical::CylindricalGear> make_cylindrical_gear(const job::Job& job);
+
+/// The straight bevel gear of the job. Refused likewise.
+[[nodiscard]] ValueOrErrors<straight_bevel::StraightBevelGear> make_straight_bevel_gear(const job::Job& job);
 
 /// What a face gear alone can do is refused to a gear of another type.
 [[nodiscard]] Diagnostic needs_face_gear(const job::Job& job);

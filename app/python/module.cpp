@@ -15,6 +15,7 @@
 #include "app/process/bevel/files.h"
 #include "app/process/cylinder/limits.h"
 #include "app/process/gear_of_job.h"
+#include "app/process/straight_bevel/limits.h"
 #include "app/report/limits/json.h"
 #include "geometry/base/inputs_read.h"
 #include "geometry/cylindrical/part.h"
@@ -106,7 +107,8 @@ class Gear {
   explicit Gear(const std::filesystem::path& file) : job_(value_or_raise(job::read_job_file(file.string()))) {
     if (job_.face_gear()) face_ = value_or_raise(process::make_face_gear(job_));
     else if (job_.bevel_gear()) bevel_ = value_or_raise(process::make_bevel_gear(job_));
-    else cylinder_ = value_or_raise(process::make_cylindrical_gear(job_));
+    else if (job_.cylindrical_gear()) cylinder_ = value_or_raise(process::make_cylindrical_gear(job_));
+    else cone_ = value_or_raise(process::make_straight_bevel_gear(job_));
   }
 
   [[nodiscard]] std::string name() const { return job_.name; }
@@ -118,9 +120,10 @@ class Gear {
     return face_ ? face_->warnings() : bevel_ ? bevel_->warnings() : std::vector<std::string>();
   }
   [[nodiscard]] py::object limits() const {
-    return from_json(face_    ? limits::limits_json(*face_)
-                     : bevel_ ? bevel::limits_json(*bevel_)
-                              : cylinder::limits_json(*cylinder_));
+    return from_json(face_       ? limits::limits_json(*face_)
+                     : bevel_    ? bevel::limits_json(*bevel_)
+                     : cylinder_ ? cylinder::limits_json(*cylinder_)
+                                 : straight_bevel::limits_json(*cone_));
   }
 
   [[nodiscard]] std::vector<Grid> flanks(std::optional<int> rows, std::optional<int> columns,
@@ -129,8 +132,10 @@ class Gear {
     const inspection::InspectionOptions options{rows.value_or(usual.rows), columns.value_or(usual.columns),
                                                 margin.value_or(usual.margin)};
     if (!bevel_) {
-      const auto points =
-          value_or_raise(inspection::inspection_grid(face_ ? drawn_solid(*face_) : drawn_solid(*cylinder_), options));
+      const auto points = value_or_raise(inspection::inspection_grid(face_       ? drawn_solid(*face_)
+                                                                     : cylinder_ ? drawn_solid(*cylinder_)
+                                                                                 : drawn_solid(*cone_),
+                                                                     options));
       return grids_of(points, options, [](int side) { return py::int_(side); });
     }
     const auto points = value_or_raise(inspection::bevel_inspection_grid(*bevel_, options));
@@ -144,6 +149,7 @@ class Gear {
   std::optional<face_gear::FaceGear> face_;
   std::optional<bevel_gear::BevelGear> bevel_;
   std::optional<cylindrical::CylindricalGear> cylinder_;
+  std::optional<straight_bevel::StraightBevelGear> cone_;
 };
 
 /// What a run found out, and where its files are.

@@ -56,11 +56,11 @@ class ToothedPart {
     const Outline &a = space(0).outline(), &b = space(1).outline();
     return a.s_to < b.s_from ? Stretch{a.s_to, b.s_from} : Stretch{b.s_to, a.s_from};
   }
-  /// Highest z of the uncut blank between the ends of its zones.
+  /// Highest z of the uncut blank from its top down to the roots, between the ends of its zones.
   [[nodiscard]] double highest_z() const {
     double s = space(0).outline().s_from;
     for (int zone = 1; zone < zones(); ++zone) s = std::min(s, space(zone).outline().s_from);
-    return chart().z(s, blank_top());
+    return std::max(chart().z(s, blank_top()), chart().z(s, lowest_root()));
   }
   [[nodiscard]] const Chart& chart() const { return space(0).outline().chart; }
 

@@ -42,12 +42,11 @@ Status check_axis_groups(const OperationTrace& trace) {
 }
 
 Status check_rapids_outside(const OperationTrace& trace, const NcControl& control, const machines::Machine& machine,
-                            const joints::Setup& setup, const joints::ClearanceBody& body,
+                            const joints::Setup& setup, const proof::RapidObstacle& obstacle,
                             std::span<const tool::ToolAssembly> tools) {
   const auto found =
       std::find_if(tools.begin(), tools.end(), [&](const tool::ToolAssembly& t) { return t.number == trace.tool; });
   const tool::ToolAssembly tool = found != tools.end() ? *found : bare_tip(trace.tool);
-  const proof::RapidObstacle obstacle{body.radius_mm, 0, body.z_max_mm, body.z_min_mm};
   // Rapids that follow one another, with the moves on either side that their corners lie on.
   const std::size_t behind = trace.moves.size() - trace.after;
   for (std::size_t i = trace.before; i < behind;) {
@@ -79,7 +78,8 @@ Status check_rapids(const OperationTrace& trace, const NcControl& control, const
                     const joints::Setup& setup, const joints::ClearanceBody& body,
                     std::span<const tool::ToolAssembly> tools) {
   if (const auto single = check_axis_groups(trace); !single) return single;
-  return check_rapids_outside(trace, control, machine, setup, body, tools);
+  return check_rapids_outside(trace, control, machine, setup,
+                              proof::RapidObstacle{body.radius_mm, 0, body.z_max_mm, body.z_min_mm}, tools);
 }
 
 }  // namespace toothpath::readback

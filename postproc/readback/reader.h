@@ -19,6 +19,7 @@
 
 #include "cam/path/cl_path.h"
 #include "cam/path/tool_motion.h"
+#include "cam/proof/rapid_clearance.h"
 #include "cam/tool/assembly.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/result.h"
@@ -295,7 +296,8 @@ struct ClComparison {
 /// moment, proven. `tools`: the job's; without them only the tip is looked at.
 [[nodiscard]] Status check_rapids_outside(const OperationTrace& trace, const NcControl& control,
                                           const machines::Machine& machine, const joints::Setup& setup,
-                                          const joints::ClearanceBody& body, std::span<const tool::ToolAssembly> tools);
+                                          const proof::RapidObstacle& obstacle,
+                                          std::span<const tool::ToolAssembly> tools);
 
 /// Both of these.
 [[nodiscard]] Status check_rapids(const OperationTrace& trace, const NcControl& control,

@@ -3,6 +3,7 @@
 #include "app/process/bevel/process.h"
 #include "app/process/cylinder/process.h"
 #include "app/process/face/process.h"
+#include "app/process/straight_bevel/process.h"
 
 namespace toothpath::flow {
 namespace {
@@ -14,6 +15,9 @@ using Made = process::ValueOrErrors<std::unique_ptr<process::GearProcess>>;
 Made process_of(const face_gear::FaceGearParameters&, const job::Job& job) { return face::make_process(job); }
 Made process_of(const bevel_gear::BevelGearParameters&, const job::Job& job) { return bevel::make_process(job); }
 Made process_of(const cylindrical::CylindricalParameters&, const job::Job& job) { return cylinder::make_process(job); }
+Made process_of(const straight_bevel::StraightBevelParameters&, const job::Job& job) {
+  return straight_bevel::make_process(job);
+}
 
 }  // namespace
 

@@ -232,9 +232,11 @@ double MilledCheck::pitches_from_space_0(const Vec3& tip) const {
   return (std::atan2(tip.y(), tip.x()) - part_.space_azimuth(zone, s)) / part_.space(zone).outline().pitch;
 }
 
-/// The cylinder that the axis program promised to avoid.
+/// The cylinder that the axis program promised to avoid; on a cone engaging rapids pass inside of it, above the blank.
 Status MilledCheck::rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const {
-  return check_rapids_outside(trace, control, machine_, *job_.setup, body_.links, job_.tools);
+  const joints::ClearanceBody& links = body_.links;
+  return check_rapids_outside(trace, control, machine_, *job_.setup,
+                              {links.radius_mm, 0, links.z_max_mm, links.z_min_mm, body_.rapids.roof}, job_.tools);
 }
 
 bool MilledCheck::may_cut(const path::ToolMotion& motion) const {
