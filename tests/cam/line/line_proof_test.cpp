@@ -732,7 +732,7 @@ TEST(Room, IsRefusedWhereAFullStationHasNone) {
     EXPECT_NE(plan.error().message.find(text), std::string::npos) << plan.error().message;
   };
   refused(tapered_mill(0.8, 5, 4, 4, 22), 0, "the flute has a gap of -0.");    // the opposite flank
-  refused(tapered_mill(0.5, 5, 4, 4, 22), 0.3, "the flute has a gap of -0.");  // so much stock here leans it into that
+  refused(tapered_mill(0.5, 5, 4, 4, 22), 0.5, "the flute has a gap of -0.");  // so much stock here leans it into that
   auto low = tapered_mill(0.5, 5, 4, 4, 4.2);
   low.holder = {{30, 30, 20}};
   refused(low, 0, "the holder has a gap of");
