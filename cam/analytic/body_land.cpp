@@ -73,12 +73,10 @@ PatchBend BodyPatches::land_bend(double s_from, double s_to) {
         kSampleDoubt * (land(share, middle - h) - 2 * land(share, middle) + land(share, middle + h)).norm() / (h * h));
     bend.spread_aa =
         std::max(bend.spread_aa, kSampleDoubt * 4 * (land(0, middle) - 2 * land(0.5, middle) + land(1, middle)).norm());
-    bend.spread_ab =
-        std::max(bend.spread_ab, kSampleDoubt *
-                                     (land(1, middle + h) - land(1, middle - h) - land(0, middle + h) +
-                                      land(0, middle - h))
-                                         .norm() /
-                                     (2 * h));
+    bend.spread_ab = std::max(
+        bend.spread_ab,
+        kSampleDoubt * (land(1, middle + h) - land(1, middle - h) - land(0, middle + h) + land(0, middle - h)).norm() /
+            (2 * h));
   }
   return bend;
 }

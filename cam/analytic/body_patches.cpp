@@ -39,8 +39,7 @@ Arc arc_of(const BodyQuad& q, const tooth_space::Chart& chart) {
   const Vec3 &a = q.corner[0], &b = q.corner[1];
   for (const Vec3& c : q.corner) arc.r = std::max(arc.r, radius(c));
   if (chart.sine > 0)
-    arc.slant =
-        std::max(std::abs(radius(b) - radius(a)), std::abs(radius(q.corner[2]) - radius(q.corner[3])));
+    arc.slant = std::max(std::abs(radius(b) - radius(a)), std::abs(radius(q.corner[2]) - radius(q.corner[3])));
   arc.width = std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y()));
   arc.outwards = Vec3(a.x() + b.x(), a.y() + b.y(), 0).normalized();
   return arc;
@@ -227,9 +226,8 @@ Vec2 BodyPatches::sides(const Cell& cell, const BodyQuad& q) const {
   const auto& c = q.corner;
   Vec2 out(std::max((c[1] - c[0]).norm(), (c[2] - c[3]).norm()), std::max((c[3] - c[0]).norm(), (c[2] - c[1]).norm()));
   if (cell.surface.end())
-    out.y() = std::min(
-        out.y(), (q.at[2].y() - q.at[0].y()) * (std::max(chart().up(c[2]), chart().up(c[3])) -
-                                                std::min(ring_.base_mm, chart().up(c[0]))));
+    out.y() = std::min(out.y(), (q.at[2].y() - q.at[0].y()) * (std::max(chart().up(c[2]), chart().up(c[3])) -
+                                                               std::min(ring_.base_mm, chart().up(c[0]))));
   return out;
 }
 

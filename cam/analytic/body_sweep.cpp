@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cam/analytic/body_patches.h"
-#include "cam/proof/roof.h"
 #include "cam/path/motion_blend.h"
+#include "cam/proof/roof.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::analytic {
@@ -311,7 +311,8 @@ class Sweep {
  private:
   /// How far the body stays above the part over the whole motion.
   [[nodiscard]] double least_height() const {
-    return roof_.over(body_, m_.tip_from, m_.axis_from, m_.tip_to, m_.axis_to) - arm_ * ((m_.axis_to - m_.axis_from).norm() + m_.axis_deviation) - m_.deviation_mm;
+    return roof_.over(body_, m_.tip_from, m_.axis_from, m_.tip_to, m_.axis_to) -
+           arm_ * ((m_.axis_to - m_.axis_from).norm() + m_.axis_deviation) - m_.deviation_mm;
   }
   [[nodiscard]] View view(double t) const { return course_.view(t); }
   [[nodiscard]] double slack(double arm, double dt) const { return course_.slack(arm, dt); }

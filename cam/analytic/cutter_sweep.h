@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "cam/analytic/gear_distance.h"
-#include "cam/proof/roof.h"
 #include "cam/path/tool_motion.h"
+#include "cam/proof/roof.h"
 #include "cam/tool/assembly.h"
 #include "cam/tool/body.h"
 

@@ -107,7 +107,8 @@ std::vector<EndQuad> end_face_quads(const EndFace& face, const std::vector<Vec2>
   const double widest = face.pitch / kStrips;
   const auto add = [&](const Vec2& a, const Vec2& b, double from, double to) {
     // Flat quads in front of a round face: of a hollow one they touch it along their borders, of another in the middle.
-    const double round = (face.outer ? face.chart.cosine : -face.chart.cosine) > 0 ? std::cos(0.5 * (b.x() - a.x())) : 1;
+    const double round =
+        (face.outer ? face.chart.cosine : -face.chart.cosine) > 0 ? std::cos(0.5 * (b.x() - a.x())) : 1;
     const auto at = [&](double azimuth, double h) {
       const double r = face.chart.r(face.s_mm, h) / round;
       return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), face.chart.z(face.s_mm, h));
@@ -116,12 +117,12 @@ std::vector<EndQuad> end_face_quads(const EndFace& face, const std::vector<Vec2>
     const int pieces = std::max(1, int(std::ceil((high - face.base_mm) / kQuadHeight)));
     const auto level = [&](double top, int q) { return face.base_mm + (top - face.base_mm) * q / pieces; };
     for (int q = 0; q < pieces; ++q)
-      quads.push_back(
-          {{at(a.x(), level(a.y(), q)), at(b.x(), level(b.y(), q)), at(a.x(), level(a.y(), q + 1)), at(b.x(), level(b.y(), q + 1))},
-           from,
-           to,
-           double(q) / pieces,
-           double(q + 1) / pieces});
+      quads.push_back({{at(a.x(), level(a.y(), q)), at(b.x(), level(b.y(), q)), at(a.x(), level(a.y(), q + 1)),
+                        at(b.x(), level(b.y(), q + 1))},
+                       from,
+                       to,
+                       double(q) / pieces,
+                       double(q + 1) / pieces});
   };
   // A stretch of land, which is one piece of the border.
   const auto land = [&](double from, double to, double piece) {

@@ -13,8 +13,8 @@ namespace toothpath::analytic {
 namespace {
 
 constexpr double kTreeError = 1e-7;  // mm: of distances to facets, with room to spare
-constexpr double kFlatTip = 0.577;   // mm/mm: of a tip surface that is no farther from what stands above it than 1 / 1.5
-constexpr double kShortLine = 0.5;   // a line that spans more than this share of its radius is not looked at
+constexpr double kFlatTip = 0.577;  // mm/mm: of a tip surface that is no farther from what stands above it than 1 / 1.5
+constexpr double kShortLine = 0.5;  // a line that spans more than this share of its radius is not looked at
 
 /// What s and h some places have.
 struct Extent {
@@ -180,7 +180,8 @@ class GearDistance::Impl::Question {
     const double middle = ring.lookup(ring.opening, s_);
     const double away = std::remainder(toothpath::azimuth(asked_) - middle, kTwoPi);
     const double index = std::round(away / part_.pitch);
-    const View at{ring, int(zone), part_.to_space_0(asked_, index), middle + away - index * part_.pitch, h_, tip, gap_s};
+    const View at{ring, int(zone), part_.to_space_0(asked_, index), middle + away - index * part_.pitch, h_,
+                  tip,  gap_s};
     const Seeds seeds = seeds_of(at);
     const bool found = sheet(at, seeds);
     edges(at);

@@ -113,9 +113,7 @@ class Maker {
   }
 
   /// A place at a station, as azimuth and height.
-  [[nodiscard]] Vec2 across(const Vec3& p, double middle) const {
-    return {next_to(middle, azimuth(p)), chart_.up(p)};
-  }
+  [[nodiscard]] Vec2 across(const Vec3& p, double middle) const { return {next_to(middle, azimuth(p)), chart_.up(p)}; }
 
   void add_cell(GearRing::Cell& cell) {
     Box box;
@@ -282,8 +280,7 @@ class Maker {
 
   [[nodiscard]] EndFace end_face(bool outer) const {
     const double s = outer ? R.s_to : R.s_from;
-    return {chart_,      s, outer, space_.tip(s), R.lookup(R.opening, s) - part_.pitch() / 2, part_.pitch(),
-            R.base_mm};
+    return {chart_, s, outer, space_.tip(s), R.lookup(R.opening, s) - part_.pitch() / 2, part_.pitch(), R.base_mm};
   }
 
   /// A strip of an end face ends at the lower of its two edges: the sheet itself stands for the rest.

@@ -52,8 +52,8 @@ struct GearRing {
   double edge_sag = 0;               ///< greatest of the edges
   std::size_t unproven_edges = 0;    ///< stretches of an edge for which only the sag that showed is known
   double tip_sag = 0;                ///< of the tip surface's meridian against the straight line between its ends
-  double tip_from = 0, tip_to = 0;  ///< its heights there
-  double tip_slope = 0;             ///< the most by which it rises or falls, mm/mm
+  double tip_from = 0, tip_to = 0;   ///< its heights there
+  double tip_slope = 0;              ///< the most by which it rises or falls, mm/mm
   std::vector<double> table_s, mid, tip_plus, tip_minus;  ///< azimuths over s
   std::vector<double> opening;                            ///< azimuth of the middle between the tip edges, over s
   double opening_slope = 0;                               ///< the most by which it turns, rad/mm

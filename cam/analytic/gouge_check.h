@@ -1,7 +1,7 @@
-// The gouge check of mills on a toothed part: what every body of the tool was found to do along every motion, and a proven
-// bound for every moment between the blocks. Ball and flute: cam/analytic/cutter_sweep.h. Cutting parts of any profile:
-// cam/analytic/profile_sweep.h. Shank and holder: cam/analytic/body_sweep.h. Rapids: cam/proof/rapid_clearance.h. Why
-// the bounds hold: docs/proof.md.
+// The gouge check of mills on a toothed part: what every body of the tool was found to do along every motion, and a
+// proven bound for every moment between the blocks. Ball and flute: cam/analytic/cutter_sweep.h. Cutting parts of any
+// profile: cam/analytic/profile_sweep.h. Shank and holder: cam/analytic/body_sweep.h. Rapids:
+// cam/proof/rapid_clearance.h. Why the bounds hold: docs/proof.md.
 #pragma once
 
 #include <cstdint>

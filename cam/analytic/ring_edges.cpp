@@ -98,9 +98,9 @@ std::vector<double> tip_edge_sags(const tooth_space::ToothSpace& space,
     const TipMeridian tip(space, stations[k], stations[k + 1]);
     const double step = stations[k + 1] - stations[k], r = tip.r.magnitude(), a1 = bends[k]->slope.magnitude(),
                  a2 = bends[k]->bend.magnitude();
-    sags.push_back(0.125 * step * step *
-                   std::hypot(tip.r2.magnitude() + r * a1 * a1, 2 * tip.r1.magnitude() * a1 + r * a2,
-                              tip.z2.magnitude()));
+    sags.push_back(
+        0.125 * step * step *
+        std::hypot(tip.r2.magnitude() + r * a1 * a1, 2 * tip.r1.magnitude() * a1 + r * a2, tip.z2.magnitude()));
   }
   return sags;
 }

@@ -5,23 +5,23 @@
 #include <functional>
 #include <vector>
 
-#include "cam/proof/roof.h"
 #include "cam/ball/finishing.h"
 #include "cam/path/cl_path.h"
+#include "cam/proof/roof.h"
 #include "cam/tool/body.h"
 
 namespace toothpath::ball {
 
 struct LinkingOptions {
-  double centre_mm = 0;            ///< height above the tip of the centre that the passes give
-  Vec3 axis = Vec3::UnitZ();       ///< fixed tool axis of the zone, tip to holder
-  proof::Roof clearance;        ///< where rapids run: above everything
-  double most_dip_mm = INFINITY;   ///< by which a straight rapid may lie below it between its ends
-  double hop_mm = 0;               ///< lift along the axis between neighbouring passes in the air beside the ring
-  double longest_hop_mm = 0;       ///< passes that end and begin farther apart are linked over the clearance height
-  double feed_mm_min = 0;          ///< of the contact point
-  double link_feed_mm_min = 0;     ///< of moves that cannot cut, not below `feed_mm_min`
-  double slow_mm = INFINITY;       ///< way along the axis before a pass on which stock may be met
+  double centre_mm = 0;           ///< height above the tip of the centre that the passes give
+  Vec3 axis = Vec3::UnitZ();      ///< fixed tool axis of the zone, tip to holder
+  proof::Roof clearance;          ///< where rapids run: above everything
+  double most_dip_mm = INFINITY;  ///< by which a straight rapid may lie below it between its ends
+  double hop_mm = 0;              ///< lift along the axis between neighbouring passes in the air beside the ring
+  double longest_hop_mm = 0;      ///< passes that end and begin farther apart are linked over the clearance height
+  double feed_mm_min = 0;         ///< of the contact point
+  double link_feed_mm_min = 0;    ///< of moves that cannot cut, not below `feed_mm_min`
+  double slow_mm = INFINITY;      ///< way along the axis before a pass on which stock may be met
   int zone = 0;
   /// Simultaneous: the axis at every point of every pass; empty: `axis` everywhere.
   std::vector<std::vector<Vec3>> axes;

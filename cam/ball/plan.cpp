@@ -113,11 +113,10 @@ class Planner::Work {
                               "left is {:.4f} mm, at least {:.4f} mm is needed",
                               2 * R, zone, room, 0.05 * wanted)};
     const double margin = std::max(delta, room) + 0.1;
-    ZonePasses out{
-        tooth_space::OffsetSheet(part_.space(zone), roughing ? delta + kRoughingPad : delta,
-                                 ring.s_from - margin, ring.s_to + margin, roughing ? 65 : 33),
-        {},
-        {}};
+    ZonePasses out{tooth_space::OffsetSheet(part_.space(zone), roughing ? delta + kRoughingPad : delta,
+                                            ring.s_from - margin, ring.s_to + margin, roughing ? 65 : 33),
+                   {},
+                   {}};
     if (auto refusal = check_width(out.sheet, key_of(n), zone, tool)) return *refusal;
     if (auto refusal = roughing ? rough(n, room, out) : finish(n, zone, room, out)) return *refusal;
     if (auto refusal = check_ways(out.passes, tool, key_of(n), zone)) return *refusal;

@@ -26,7 +26,7 @@ std::vector<Vec3> lower_directions() {
 /// offset root surface.
 struct Walls {
   std::vector<double> plus_height, plus_azimuth, minus_height, minus_azimuth;  // heights descending
-  double root = 0;           // height of the centre of a ball that touches the root surface, whether or not the walls let it
+  double root = 0;  // height of the centre of a ball that touches the root surface, whether or not the walls let it
   double bottom_height = 0;  // lowest centre that the walls allow
 };
 

@@ -67,8 +67,8 @@ class PassMaker {
     return fail(
         "the flank ends inside the ring (undercut): a ball of radius {:.4f} mm touches it at {} {:.4f} to "
         "{:.4f} mm, the ring is {:.4f} to {:.4f} mm; {:.3g} mm are missing at its {} end",
-        o_.ball_radius_mm, ring.along, low, high, from, to,
-        at_inner_end ? least - ring.s_from : ring.s_to - most, at_inner_end ? ring.from : ring.to);
+        o_.ball_radius_mm, ring.along, low, high, from, to, at_inner_end ? least - ring.s_from : ring.s_to - most,
+        at_inner_end ? ring.from : ring.to);
   }
 
   [[nodiscard]] double along(const Vec3& p) const { return sheet_.space().outline().chart.along(p); }

@@ -265,8 +265,8 @@ class Search {
   const DirectionOptions& o_;
   std::vector<Vec3> few_, many_;
   PitchFrame frame_;
-  bool beside_ring_;    ///< a double helical gear: another ring of teeth stands across the groove,
-  bool upright_first_;  ///< which an axis along that of the gear does not meet
+  bool beside_ring_;                    ///< a double helical gear: another ring of teeth stands across the groove,
+  bool upright_first_;                  ///< which an axis along that of the gear does not meet
   std::optional<tool::Frustum> flute_;  ///< asked for then, and where it is a cone
   proof::DirectionChoice choice_;
 };

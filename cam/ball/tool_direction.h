@@ -29,10 +29,10 @@ struct PitchFrame {
 
 /// Tries directions around the normal of the pitch surface, leaning by 0 to 45 deg in steps of 5 deg to sides at most 7
 /// deg of arc apart, then smaller and smaller steps around the best of them, and takes the clear one that leans least.
-/// Where another ring of teeth stands beside the zone of a face gear, the gear axis comes first, and a direction in which the flute
-/// cuts the teeth is not clear. `fixed` is false and the axis meaningless when none is clear; then the map holds every
-/// direction tried with the body in the way and its gap. A gap below 0 says by how much the body would have to be
-/// slimmer and begin higher to cut nowhere (followed to -3 mm).
+/// Where another ring of teeth stands beside the zone of a face gear, the gear axis comes first, and a direction in
+/// which the flute cuts the teeth is not clear. `fixed` is false and the axis meaningless when none is clear; then the
+/// map holds every direction tried with the body in the way and its gap. A gap below 0 says by how much the body would
+/// have to be slimmer and begin higher to cut nowhere (followed to -3 mm).
 [[nodiscard]] proof::DirectionChoice choose_direction(const analytic::GearDistance& part,
                                                       const analytic::BodyTree& tree, int zone,
                                                       const tooth_space::OffsetSheet& sheet,

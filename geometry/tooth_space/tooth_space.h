@@ -50,7 +50,9 @@ struct Chart {
   [[nodiscard]] Vec3 along_at(double azimuth) const {
     return {cosine * std::cos(azimuth), cosine * std::sin(azimuth), -sine};
   }
-  [[nodiscard]] Vec3 up_at(double azimuth) const { return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine}; }
+  [[nodiscard]] Vec3 up_at(double azimuth) const {
+    return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
+  }
 
  private:
   static double outwards(const Vec3& p, const Vec3& d) { return (p.x() * d.x() + p.y() * d.y()) / radius(p); }

@@ -92,7 +92,9 @@ std::vector<path::ClRecord> row(const Case& c, int threads) {
   const face_gear::FaceGear gear = test::made(c.gear);
   Clock clock;
   std::unique_ptr<analytic::GearDistance> part;
-  clock.run("distance index", [&] { part = std::make_unique<analytic::GearDistance>(face_gear::part_of(gear), ball::reach_of(c.tools)); });
+  clock.run("distance index", [&] {
+    part = std::make_unique<analytic::GearDistance>(face_gear::part_of(gear), ball::reach_of(c.tools));
+  });
   plan::Options options;
   options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
   plan::MillingPlan plan;

@@ -47,8 +47,8 @@ struct Planned {
 /// A finishing path of about `records` records: the cusp height decides. Passes repeat where the planner's own number
 /// is not reached.
 std::unique_ptr<Planned> plan(int teeth, std::size_t records) {
-  auto job = std::make_unique<Planned>(
-      Planned{test::made(spur(teeth)), {mill()}, analytic::GearDistance(face_gear::part_of(test::made(spur(teeth))), 1.3), {}});
+  auto job = std::make_unique<Planned>(Planned{
+      test::made(spur(teeth)), {mill()}, analytic::GearDistance(face_gear::part_of(test::made(spur(teeth))), 1.3), {}});
   path::MillingOperation op;
   op.type = path::OperationType::finishing;
   op.speed_rpm = 20000;

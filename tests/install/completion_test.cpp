@@ -144,7 +144,8 @@ TEST_F(Completion, OfZshProposesTheSame) {
     EXPECT_EQ(in_zsh(fmt::format("toothpath {} --", fmt::join(command.words, " "))), long_ones(options));
   }
   EXPECT_EQ(in_zsh("toothpath --color a"), (Words{"always", "auto"}));
-  EXPECT_EQ(in_zsh("toothpath new --gear "), (Words{"face", "double_helical", "offset", "bevel_herringbone", "cylindrical"}));
+  EXPECT_EQ(in_zsh("toothpath new --gear "),
+            (Words{"face", "double_helical", "offset", "bevel_herringbone", "cylindrical"}));
   EXPECT_EQ(in_zsh("toothpath new --cut "), (Words{"ball", "line", "shaped", "finger"}));
   EXPECT_EQ(in_zsh("toothpath new --machine xyz"), (Words{"xyzac_large", "xyzac_trt", "xyzbc_trt"}));
   EXPECT_EQ(in_zsh("toothpath machine show xyz"), (Words{"xyzac_large", "xyzac_trt", "xyzbc_trt"}));

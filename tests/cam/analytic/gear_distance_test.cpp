@@ -118,7 +118,8 @@ TEST_P(Distance, FacetsKeepBelowTheTruth) {
     EXPECT_LE(keeps, std::abs(truth.distance) + 2e-7) << c.transpose() << " " << truth.patch;
     // Quads go on beyond ends and tips, by less than a cell: away from there, in a space, only the sag is lost.
     const double beside = std::min(r - gear.inner_radius(), gear.outer_radius() - r);
-    const double tip = test::sheet_of(part.space(0)).surface().z_tip(std::clamp(r, gear.inner_radius(), gear.outer_radius()));
+    const double tip =
+        test::sheet_of(part.space(0)).surface().z_tip(std::clamp(r, gear.inner_radius(), gear.outer_radius()));
     if (part.zones() > 1 || truth.distance < 0 || truth.distance >= within || beside < 0.5 + truth.distance) continue;
     if (c.z() > tip - 0.5 - truth.distance) continue;
     ++near;

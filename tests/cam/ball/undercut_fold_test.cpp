@@ -1,7 +1,7 @@
 // Gears whose pitch point lies beyond the fold of the undercut (few teeth against the shaper's, low pressure angles,
 // strong helices): the space is found wherever a plain search finds a regular flank, and nowhere else.
-#include "tests/cam/ball/face_gear_jobs.h"
 #include "geometry/face_gear/part.h"
+#include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/brute_force_face_gear.h"
 
 namespace toothpath {

@@ -118,15 +118,16 @@ TEST(TurningRapid, NeverCallsATouchClear) {
   EXPECT_GE(near, 2);
 }
 
-/// No sampled place of a body lies lower than the bound, for teeth on a plane, a cylinder and cones that open either way;
-/// and the bound is not far below the lowest of them where the body stands upright.
+/// No sampled place of a body lies lower than the bound, for teeth on a plane, a cylinder and cones that open either
+/// way; and the bound is not far below the lowest of them where the body stands upright.
 TEST(Roof, LiesBelowEveryPlaceOfABody) {
   test::Random random(3);
   for (const double angle : {0.0, 0.4, 0.5 * kPi, 2.1})
     for (int n = 0; n < 200; ++n) {
       const tooth_space::Chart chart{std::cos(angle), std::sin(angle)};
       const proof::Roof roof(chart, 40);
-      const tool::RoundedFrustum body{{random(0, 5), random(6, 30), random(0.2, 6), random(0.2, 9), tool::Body::holder}, 0};
+      const tool::RoundedFrustum body{{random(0, 5), random(6, 30), random(0.2, 6), random(0.2, 9), tool::Body::holder},
+                                      0};
       const Vec3 tip = random.vector(60);
       const Vec3 axis = n % 2 == 0 ? chart.up_at(azimuth(tip)) : random.vector(1).normalized();
       const double told = roof.over(body, tip, axis);
@@ -139,9 +140,7 @@ TEST(Roof, LiesBelowEveryPlaceOfABody) {
           lowest = std::min(lowest, chart.up(Vec3(tip + h * axis + r * (std::cos(a) * u + std::sin(a) * v))) - 40);
         }
       EXPECT_LE(told, lowest + 1e-9) << angle << " " << n;
-      if (n % 2 == 0) {
-        EXPECT_GT(told, lowest - 2.5 * body.widest()) << angle << " " << n;
-      }
+      if (n % 2 == 0) { EXPECT_GT(told, lowest - 2.5 * body.widest()) << angle << " " << n; }
     }
 }
 
