@@ -82,8 +82,8 @@ void CutterSweep::note(const NearestPlace& q, tool::Body body) {
 /// what the deviation of the axis does there is not made smaller by halving.
 bool CutterSweep::settled(double least, double seen, double slack, double arm) const {
   const double deepest = R_ - least + slack;
-  const double here =
-      std::max(seen, deepest <= tolerance_ ? worst_ : 0);  // beyond the tolerance its own place is wanted
+  // Beyond the tolerance its own place is wanted: of a motion that deviates far, too, and passes by.
+  const double here = deepest <= tolerance_ ? std::max(seen, worst_) : seen;
   const double leeway = here > 50 * tolerance_ ? 0.25 * here : 0;
   // The tool may slide along the part: the verdict stands, and how deep it is need not be known at any price.
   const std::size_t spent = (queries_ - queries_before_) / kQueriesOfWreck;

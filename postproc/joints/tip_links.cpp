@@ -69,7 +69,7 @@ void ToothBuilder::tip_link_to(const machines::TablePose& target, const RotaryPa
   if (target.axis.z() < kLeastUp) {
     error_ = fail(
         "operation {} record {} (tooth {}): the tool axis rises by {:.3f} only, seen from the table; links with TCP "
-        "need {:.1f}",
+        "need {:.1f}; with tcp = \"none\" in the machine file the program carries the joints and needs none",
         operation_->operation, record_, tooth_, target.axis.z(), kLeastUp);
     return;
   }
@@ -95,7 +95,7 @@ void ToothBuilder::rise_along_tool() {
   if (axis.z() < kLeastUp) {
     error_ = fail(
         "operation {} record {} (tooth {}): the tool axis rises by {:.3f} only, seen from the table; links with TCP "
-        "need {:.1f}",
+        "need {:.1f}; with tcp = \"none\" in the machine file the program carries the joints and needs none",
         operation_->operation, record_, tooth_, axis.z(), kLeastUp);
     return;
   }
