@@ -225,7 +225,7 @@ straight_bevel::StraightBevelParameters read_straight_bevel_gear(toml::TableRead
   const double shaft_angle = radians(gear.number_or("shaft_angle", kShaftAngle, 90));
   int mate_teeth = 0;
   read_pitch_angle(gear, p.teeth, shaft_angle, mate_teeth, p.pitch_angle_rad);
-  if (shaft && gear.has("pitch_angle"))
+  if (shaft && gear.has("pitch_angle") && !gear.has("mate_teeth"))
     gear.refuse("shaft_angle", "shaft_angle contradicts pitch_angle: it goes with mate_teeth");
   p.outer_transverse_module_mm = gear.number("outer_transverse_module", kModule).value_or(0);
   p.pressure_angle_rad = radians(gear.number("pressure_angle", kPressureAngle).value_or(0));
