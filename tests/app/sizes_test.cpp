@@ -1,5 +1,5 @@
 // The rules of size: no function body above 60 lines without a reason in its comment, no public function with 8
-// parameters, no room with more than 25 files. What counts functions is itself tested on text with planted faults.
+// parameters, no room with more than 30 files. What counts functions is itself tested on text with planted faults.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path kSourceRoot = TOOTHPATH_SOURCE_DIR;
-constexpr int kLongestBody = 60, kMostParameters = 7, kMostFiles = 25;
+constexpr int kLongestBody = 60, kMostParameters = 7, kMostFiles = 30;
 /// What the comment of a longer function says, with the reason behind it.
 constexpr std::string_view kReason = "Long because ";
 
@@ -232,7 +232,7 @@ TEST(Sizes, NoPublicFunctionWithEightParameters) {
   EXPECT_GT(seen, 800u) << "the reader of headers sees next to nothing";
 }
 
-TEST(Sizes, NoRoomWithMoreThan25Files) {
+TEST(Sizes, NoRoomWithMoreThan30Files) {
   for (const char* top : {"geometry", "cam", "machines", "postproc", "app"})
     for (const auto& entry : fs::recursive_directory_iterator(kSourceRoot / top)) {
       if (!entry.is_directory()) continue;
