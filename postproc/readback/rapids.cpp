@@ -78,8 +78,7 @@ Status check_rapids(const OperationTrace& trace, const NcControl& control, const
                     const joints::Setup& setup, const joints::ClearanceBody& body,
                     std::span<const tool::ToolAssembly> tools) {
   if (const auto single = check_axis_groups(trace); !single) return single;
-  return check_rapids_outside(trace, control, machine, setup,
-                              proof::RapidObstacle{body.radius_mm, 0, body.z_max_mm, body.z_min_mm}, tools);
+  return check_rapids_outside(trace, control, machine, setup, obstacle_of(body), tools);
 }
 
 }  // namespace toothpath::readback

@@ -292,7 +292,11 @@ struct ClComparison {
 [[nodiscard]] bool mixes_axis_groups(const ExecutedMove& from, const ExecutedMove& to);
 /// No rapid of the trace does that. The refusal names the line.
 [[nodiscard]] Status check_axis_groups(const OperationTrace& trace);
-/// In every rapid of the trace every body of the tool is outside `body` (cylinder about the gear axis in W) at every
+/// A body as rapids see it: all of the cylinder.
+[[nodiscard]] inline proof::RapidObstacle obstacle_of(const joints::ClearanceBody& body) {
+  return {body.radius_mm, 0, body.z_max_mm, body.z_min_mm};
+}
+/// In every rapid of the trace every body of the tool is clear of `obstacle` (about the gear axis in W) at every
 /// moment, proven. `tools`: the job's; without them only the tip is looked at.
 [[nodiscard]] Status check_rapids_outside(const OperationTrace& trace, const NcControl& control,
                                           const machines::Machine& machine, const joints::Setup& setup,

@@ -240,7 +240,8 @@ void expect_round_trip(const std::string& text, const joints::AxisProgram& progr
   }
   if (job.bevel_gear() == nullptr)
     for (const auto& stretch : back->between) {
-      const auto clear = readback::check_rapids_outside(stretch, *control, m, *job.setup, planned.body, job.tools);
+      const auto clear = readback::check_rapids_outside(stretch, *control, m, *job.setup,
+                                                        readback::obstacle_of(planned.body), job.tools);
       EXPECT_TRUE(clear) << (clear ? "" : clear.error().message);
     }
   std::vector<const path::ClPath*> list;

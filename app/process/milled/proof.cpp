@@ -234,9 +234,9 @@ double MilledCheck::pitches_from_space_0(const Vec3& tip) const {
 
 /// The cylinder that the axis program promised to avoid; on a cone engaging rapids pass inside of it, above the blank.
 Status MilledCheck::rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const {
-  const joints::ClearanceBody& links = body_.links;
-  return check_rapids_outside(trace, control, machine_, *job_.setup,
-                              {links.radius_mm, 0, links.z_max_mm, links.z_min_mm, body_.rapids.roof}, job_.tools);
+  proof::RapidObstacle obstacle = readback::obstacle_of(body_.links);
+  obstacle.roof = body_.rapids.roof;
+  return check_rapids_outside(trace, control, machine_, *job_.setup, obstacle, job_.tools);
 }
 
 bool MilledCheck::may_cut(const path::ToolMotion& motion) const {

@@ -173,7 +173,8 @@ TEST_P(ToolCheckForms, StandWhereTheyAreAskedFor) {
     EXPECT_EQ(read->mixed_rapid, 0);
     EXPECT_EQ(read->length_off_mm, 0);
     for (const auto& trace : read->between)
-      EXPECT_TRUE(readback::check_rapids_outside(trace, control, machine, standing(), kBody, tools()));
+      EXPECT_TRUE(
+          readback::check_rapids_outside(trace, control, machine, standing(), readback::obstacle_of(kBody), tools()));
     // The ways to the setter are among the times that a check takes; the retract behind it is not.
     const double more = read->minutes - plain_read->minutes, asked = static_cast<double>(c.at.size()) * kCheck_min;
     EXPECT_GT(more, asked * (1 - 1e-6));

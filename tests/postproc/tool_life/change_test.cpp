@@ -170,7 +170,8 @@ TEST_P(ToolLife, RandomLives) {
     for (std::size_t k = 0; k < read->copies.operations.size() && read->copies.copies; ++k)
       EXPECT_EQ(read->copies.operations[k].turns, plain_read->copies.operations[k].turns);
     for (const auto& trace : read->between)
-      EXPECT_TRUE(readback::check_rapids_outside(trace, ctl, machine, standing(), kBody, with_sisters(tool)));
+      EXPECT_TRUE(readback::check_rapids_outside(trace, ctl, machine, standing(), readback::obstacle_of(kBody),
+                                                 with_sisters(tool)));
     // A life that is shorter is seen, with a line of the tool.
     const auto worn =
         readback::read_back(text->text, "p", ctl, machine, standing(),
