@@ -62,9 +62,9 @@ TEST(LineRefusals, TooThickForTheSpace) {
 // So much stock leans the mill into what stands on the flank across.
 TEST(LineRefusals, StockOnTheOtherFlank) {
   expect_words(
-      refused(with(kDoubleHelical, line(3, "allowance = 0.15\nleft = 0.003"))),
+      refused(with(kDoubleHelical, line(3, "allowance = 0.25\nleft = 0.003"))),
       {"the flute has a gap of 0.",
-       "to the flank -1, 0.1275 mm is the least, the stock that stands there: it would rub", "a smaller allowance"});
+       "to the flank -1, 0.2125 mm is the least, the stock that stands there: it would rub", "a smaller allowance"});
 }
 
 // The mill leans over the groove: where that is too narrow its pass ends before the flank does, and nothing is written.

@@ -42,7 +42,7 @@ def written():
     keys.update(re.findall(r'\["([a-z_0-9]+)"\]', text))
     keys.update(*re.findall(r'const char\* key : \{([^}]*)\}', text) and
                 [re.findall(r'"([a-z_]+)"', names) for names in re.findall(r'const char\* key : \{([^}]*)\}', text)])
-    for name in ["face/proof.cpp", "face/unreached.cpp", "bevel/proof.cpp"]:
+    for name in ["milled/proof.cpp", "milled/unreached.cpp", "bevel/proof.cpp"]:
         with open(f"{root}/app/process/{name}", encoding="utf-8") as file:
             text = file.read()
         keys.update(re.findall(r'finding\.key = "([a-z_]+)"', text))

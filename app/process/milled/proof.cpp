@@ -111,6 +111,13 @@ void judge_finished(const cut::CutSurface& surface, const job::Job& job, const p
   if (!said.empty()) reasons.push_back(std::move(said));
 }
 
+/// Stock that a region is asked to have after an operation.
+double asked_stock(const job::Job& job, std::size_t n, path::Region region) {
+  if (!job.operations[n].regions[region])
+    if (const auto before = path::last_before(job.operations, n, region)) n = *before;
+  return job.operations[n].allowance_mm;
+}
+
 /// What a finishing operation may leave, on every point that its ball can reach: the cusps, the chords and a
 /// micrometre.
 void judge_surface(const cut::CutSurface& surface, const job::Job& job, const proof::ProofLimits& limits,
@@ -121,12 +128,20 @@ void judge_surface(const cut::CutSurface& surface, const job::Job& job, const pr
     if (after.points == 0) continue;
     // The side of a mill is asked for the flanks; its end runs through what is left in fillets and root.
     const bool side = op.type == path::OperationType::line_milling;
-    const double allowance = op.allowance_mm, least = side ? surface.least_in_mm[n][path::Region::flank] : after.min_mm;
     if (side) judge_line_flank(surface, op, n, reasons);
-    if (allowance > 0 && least < kLeastAllowance * allowance)
-      reasons.push_back(
-          fmt::format("operation {}: the least stock left{} is {:.4f} mm, below {:.4f} mm ({} of the allowance {:.4f})",
-                      n, side ? " on a flank" : "", least, kLeastAllowance * allowance, kLeastAllowance, allowance));
+    // Where it does not cut, what was asked to stay there before must stand.
+    std::optional<path::Region> thin;
+    double lacks = 0;
+    for (const path::Region region : path::kRegions) {
+      if (side && region != path::Region::flank) continue;
+      const double least = surface.least_in_mm[n][region], lack = kLeastAllowance * asked_stock(job, n, region) - least;
+      if (op.allowance_mm > 0 && lack > lacks) lacks = lack, thin = region;
+    }
+    if (!thin) continue;
+    const double allowance = asked_stock(job, n, *thin);
+    reasons.push_back(fmt::format(
+        "operation {}: the least stock left on the {} is {:.4f} mm, below {:.4f} mm ({} of the allowance {:.4f})", n,
+        to_string(*thin), surface.least_in_mm[n][*thin], kLeastAllowance * allowance, kLeastAllowance, allowance));
   }
   judge_finished(surface, job, limits, reasons);
 }
