@@ -141,7 +141,8 @@ Status OutputDir::prepare(const std::vector<std::string>& inputs) {
 }
 
 OutputDir::OutputDir(OutputDir&& other) noexcept
-    : folder_(other.folder_),  // a copy: what it registered stands by its handle
+    // A copy: what it registered stands by its handle. NOLINTNEXTLINE(performance-move-constructor-init)
+    : folder_(other.folder_),
       names_(std::move(other.names_)),
       previous_(std::move(other.previous_)),
       exchange_(std::move(other.exchange_)),
