@@ -132,7 +132,7 @@ void read_pitch_angle(toml::TableReader& gear, int teeth, double shaft_angle_rad
   if (mate && angle) gear.refuse("pitch_angle", "pitch_angle contradicts mate_teeth: give one of the two");
   if (!mate && !angle) gear.refuse("mate_teeth", "[gear] lacks the key \"mate_teeth\" (or \"pitch_angle\")");
   if (mate && mate_teeth > 0 && teeth > 0)
-    pitch_angle_rad = std::atan2(std::sin(shaft_angle_rad), double(mate_teeth) / teeth + std::cos(shaft_angle_rad));
+    pitch_angle_rad = straight_bevel::pitch_angle(teeth, mate_teeth, shaft_angle_rad);
 }
 
 bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear, const std::string& directory) {

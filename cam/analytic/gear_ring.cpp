@@ -7,6 +7,7 @@
 #include "cam/analytic/gear_cells.h"
 #include "cam/analytic/ring_edges.h"
 #include "geometry/base/angle.h"
+#include "geometry/tooth_space/limits.h"
 
 namespace toothpath::analytic {
 namespace {
@@ -173,29 +174,13 @@ class Maker {
     }
   }
 
-  /// The middle of the root at s.
-  [[nodiscard]] Vec3 root_middle(double s) const {
-    constexpr int kRootSteps = 20;
-    double v = 0;
-    for (int attempt = 0; attempt < tooth_space::ToothSpace::kStarts; ++attempt)
-      if (const auto start = space_.start_v(tooth_space::Piece::root, 0.5, s, 0, {}, attempt)) {
-        v = *start;
-        break;
-      }
-    auto q = space_.at(tooth_space::Piece::root, 0.5, v);
-    for (int k = 0; q && k < kRootSteps && std::abs(chart_.along(q->p) - s) > 1e-9; ++k) {
-      v += (s - chart_.along(q->p)) / chart_.along(q->p, q->pv);
-      q = space_.at(tooth_space::Piece::root, 0.5, v);
-    }
-    return q ? q->p : Vec3(Vec3::Constant(NAN));
-  }
-
   void tables() {
     const double pitch = part_.pitch();
     std::optional<tooth_space::EdgePlace> last_plus, last_minus;
     for (int k = 0; k < kTable; ++k) {
       const double s = R.s_from + (R.s_to - R.s_from) * k / (kTable - 1);
-      const double tip = space_.tip(s), root = azimuth(root_middle(s));
+      const double tip = space_.tip(s),
+                   root = azimuth(tooth_space::place_at(space_, tooth_space::Piece::root, 0.5, s)->p);
       R.table_s.push_back(s);
       R.mid.push_back(k > 0 ? next_to(R.mid.back(), root) : root);
       last_plus = edge_at(1, s, last_plus, R.mid.back());

@@ -34,15 +34,9 @@ double lower_end(const CylindricalGear& gear) { return gear.parameters().zones.f
 double upper_end(const CylindricalGear& gear) { return gear.parameters().zones.back().to_mm; }
 
 /// Links and rapids keep clear of the blank: a cylinder, its bore closed.
-milled::GearBody body_of(const CylindricalGear& gear, const tooth_space::ToothedPart& part) {
+milled::GearBody body_of(const CylindricalGear& gear) {
   const double r = 0.5 * gear.tip_diameter();
-  milled::GearBody body;
-  body.teeth = part.teeth();
-  body.outer_radius_mm = r;
-  body.blank_top_mm = part.blank_top();
-  body.links = {r, lower_end(gear), upper_end(gear)};
-  body.rapids = {r, 0, upper_end(gear), lower_end(gear)};
-  return body;
+  return {{r, lower_end(gear), upper_end(gear)}, {r, 0, upper_end(gear), lower_end(gear)}};
 }
 
 const char* kind_of(const CylindricalParameters& p) {
@@ -59,7 +53,7 @@ milled::ToothedGear toothed(CylindricalGear made) {
   out.solid = drawn_solid(gear);
   out.owner = owner;
   out.facts = {p.teeth, gear.tip_diameter(), gear.tip_diameter(), {}};
-  out.body = body_of(gear, *out.part);
+  out.body = body_of(gear);
   out.outline = {0.5 * gear.root_diameter(),
                  0.5 * gear.tip_diameter(),
                  upper_end(gear),

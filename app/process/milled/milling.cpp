@@ -75,10 +75,10 @@ Milling::Milling(const job::Job& job, const machines::Machine& machine, analytic
                  const proof::ProofLimits& limits, const process::FlankGrid& grid)
     : job_(job),
       limits_(limits),
-      options_(plan_options(limits, machine, body.outer_radius_mm)),
+      options_(plan_options(limits, machine, body.links.radius_mm)),
       part_(std::move(part)),
       body_(std::move(body)),
-      gouge_(part_, job.tools, {limits, body_.blank_top_mm}),
+      gouge_(part_, job.tools, {limits, part_.part().blank_top()}),
       check_(job, machine, limits, part_, body_, gouge_, surface_options(grid)) {}
 
 Status Milling::plan(app::StageClock& clock, app::Progress& progress) {

@@ -13,6 +13,7 @@
 #include "cam/proof/rapid_clearance.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
+#include "geometry/tooth_space/zone_next_to.h"
 
 namespace toothpath::milled {
 namespace {
@@ -231,19 +232,13 @@ MilledCheck::MilledCheck(const job::Job& job, const machines::Machine& machine, 
       grid_(grid),
       tools_(tool::proof_tools(job.tools)) {}
 
-int MilledCheck::teeth() const { return body_.teeth; }
+int MilledCheck::teeth() const { return part_.part().teeth(); }
 
 double MilledCheck::motion_tolerance() const { return kBallMotionTolerance; }
 
 double MilledCheck::pitches_from_space_0(const Vec3& tip) const {
-  const double s = part_.space(0).outline().chart.along(tip);
-  const auto away = [&](int zone) {
-    const tooth_space::Outline& ring = part_.space(zone).outline();
-    return std::max(ring.s_from - s, s - ring.s_to);
-  };
-  int zone = 0;
-  for (int k = 1; k < part_.zones(); ++k)  // in a groove: of the nearer ring
-    if (away(k) < away(zone)) zone = k;
+  const double s = part_.part().chart().along(tip);
+  const int zone = tooth_space::zone_next_to(part_.part(), s);
   return (std::atan2(tip.y(), tip.x()) - part_.space_azimuth(zone, s)) / part_.space(zone).outline().pitch;
 }
 
@@ -377,8 +372,13 @@ void MilledCheck::judge_load(std::span<const path::ToolMotion> one_space, std::v
       if (m.operation == int(n)) motions.push_back(m);
     if (motions.empty()) return;  // told elsewhere; what the next ones meet is not known
     const tool::Profile mill = tool::profile_of(tool);
-    const cut::EngagementQuery stock{mill, tool_of(int(n)).cutting, before, body_.in_blank, part_.part().highest_z(),
-                                     1,    part_.part().chart()};
+    const cut::EngagementQuery stock{mill,
+                                     tool_of(int(n)).cutting,
+                                     before,
+                                     [&](const Vec3& p) { return part_.part().in_blank(p); },
+                                     part_.part().highest_z(),
+                                     1,
+                                     part_.part().chart()};
     const cut::Overload load = cut::overload_along(
         motions, stock,
         {asked.operations[n].feed_mm_min, op.step_down_mm, ball::stock_before(job_.operations, job_.tools, n)});
@@ -438,7 +438,7 @@ void MilledCheck::judge(process::ProgramProof& program, app::StageClock& clock) 
   if (program.others_text) clock.run("engagement", [&] { judge_other_loads(program, others.loaded_otherwise()); });
   if (!program.reasons.empty()) program.reasons.insert(program.reasons.end(), shortened.begin(), shortened.end());
   if (!program.reasons.empty())
-    if (const auto coarse = process::coarse_words(job_, machine_, body_.outer_radius_mm))
+    if (const auto coarse = process::coarse_words(job_, machine_, body_.links.radius_mm))
       program.reasons.push_back(*coarse);
   judge_unreached(surface.unreached, job_.verify.unreached_mm, program.reasons);
   program.excess = surface.operations;

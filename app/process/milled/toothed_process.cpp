@@ -13,15 +13,14 @@
 #include "cam/rest/toothed_blank.h"
 #include "geometry/exchange/tooth_shell.h"
 #include "geometry/tooth_space/limits.h"
+#include "geometry/tooth_space/zone_next_to.h"
 
 namespace toothpath::milled {
 namespace {
 
 class ToothedProcess final : public process::GearProcess {
  public:
-  ToothedProcess(const job::Job& job, ToothedGear gear) : job_(job), gear_(std::move(gear)) {
-    gear_.body.in_blank = [part = gear_.part](const Vec3& p) { return part->in_blank(p); };
-  }
+  ToothedProcess(const job::Job& job, ToothedGear gear) : job_(job), gear_(std::move(gear)) {}
 
   [[nodiscard]] const process::PartFacts& part() const override { return gear_.facts; }
   [[nodiscard]] Result<process::Correction> correct(const job::MeasuredInput&, app::StageClock&) override {
@@ -96,13 +95,7 @@ class ToothedProcess final : public process::GearProcess {
   /// Of the root's middle in the zone next to a place.
   static double azimuth_of_space(const tooth_space::ToothedPart& part, const Vec3& p) {
     const double s = part.chart().along(p);
-    const auto away = [&](int zone) {
-      const tooth_space::Outline& ring = part.space(zone).outline();
-      return std::max(ring.s_from - s, s - ring.s_to);
-    };
-    int zone = 0;
-    for (int k = 1; k < part.zones(); ++k)
-      if (away(k) < away(zone)) zone = k;
+    const int zone = tooth_space::zone_next_to(part, s);
     const tooth_space::Outline& ring = part.space(zone).outline();
     const auto root =
         tooth_space::place_at(part.space(zone), tooth_space::Piece::root, 0.5, std::clamp(s, ring.s_from, ring.s_to));

@@ -20,7 +20,7 @@ struct ToothedGear {
   tooth_space::ToothedSolid solid;  ///< its spaces live as long as `owner`
   std::shared_ptr<const void> owner;
   process::PartFacts facts;
-  GearBody body;  ///< `in_blank` is that of the part
+  GearBody body;
   sheet::PartOutline outline;
   std::string subtitle;  ///< of the page, without the machine
   std::function<std::string()> limits_json;

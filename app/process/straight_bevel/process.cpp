@@ -45,11 +45,7 @@ milled::ToothedGear toothed(StraightBevelGear made) {
   out.solid = drawn_solid(gear);
   out.owner = owner;
   out.facts = {p.teeth, 2 * outer, 2 * outer, {}};
-  out.body.teeth = p.teeth;
-  out.body.outer_radius_mm = outer;
-  out.body.blank_top_mm = out.part->blank_top();
-  out.body.links = {outer, top, bottom};
-  out.body.rapids = {outer, 0, bottom, top, proof::Roof(*out.part)};
+  out.body = {{outer, top, bottom}, {outer, 0, bottom, top, proof::Roof(*out.part)}};
   out.outline = {r(ring.s_to, root), outer, top, z(ring.s_from, -p.dedendum_mm), bottom, gear_words(gear)};
   out.subtitle = fmt::format("straight bevel gear z {}, outer module {} mm, {}, pitch angle {:.4f} deg", p.teeth,
                              svg::short_number(p.outer_transverse_module_mm), form_of(p), degrees(p.pitch_angle_rad));
