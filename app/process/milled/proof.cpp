@@ -112,11 +112,14 @@ void judge_finished(const cut::CutSurface& surface, const job::Job& job, const p
   if (!said.empty()) reasons.push_back(std::move(said));
 }
 
-/// Stock that a region is asked to have after an operation.
+/// Stock that must stand in a region after operation n: what was asked of the region last, or less where an operation
+/// since then was allowed less. It may run out of its own regions, there too it keeps its own allowance.
 double asked_stock(const job::Job& job, std::size_t n, path::Region region) {
-  if (!job.operations[n].regions[region])
-    if (const auto before = path::last_before(job.operations, n, region)) n = *before;
-  return job.operations[n].allowance_mm;
+  std::size_t last = n;
+  if (!job.operations[n].regions[region]) last = path::last_before(job.operations, n, region).value_or(n);
+  double least = job.operations[last].allowance_mm;
+  for (std::size_t i = last; i <= n; ++i) least = std::min(least, job.operations[i].allowance_mm);
+  return least;
 }
 
 /// What a finishing operation may leave, on every point that its ball can reach: the cusps, the chords and a
@@ -130,7 +133,6 @@ void judge_surface(const cut::CutSurface& surface, const job::Job& job, const pr
     // The side of a mill is asked for the flanks; its end runs through what is left in fillets and root.
     const bool side = op.type == path::OperationType::line_milling;
     if (side) judge_line_flank(surface, op, n, reasons);
-    // Where it does not cut, what was asked to stay there before must stand.
     std::optional<path::Region> thin;
     double lacks = 0;
     for (const path::Region region : path::kRegions) {
