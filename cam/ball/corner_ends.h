@@ -11,6 +11,8 @@
 //           |  ......|-----------'        <- where the ball touches the edge of the other wall
 //           |  ......|----'
 //           |  ......|  from here on the ball touches both walls; the corner has its pass
+//
+// A ball that is held by both walls all along the ring may so come down to a spot of the root land at the very end.
 #pragma once
 
 #include <functional>
@@ -25,10 +27,12 @@ namespace toothpath::ball {
 /// anything larger.
 using PartDistance = std::function<double(const Vec3& centre)>;
 
-/// Passes from an end of the ring (with run-out) to where the corner closes, spaced for the asked cusp; none on a sheet
-/// without gaps and where what stays without them is below the asked cusp. Their ball centres keep the offset of the
-/// sheet from the part, but for 0.05 um.
+/// Passes from an end of the ring (with run-out) to where the corner closes, spaced for the asked cusp, and over every
+/// spot there that neither they nor `laid`, all other passes, cover; none on a sheet without gaps and where what stays
+/// without them is below the asked cusp. Their ball centres keep the offset of the sheet from the part, but for 0.05
+/// um.
 [[nodiscard]] std::vector<BallPass> plan_corner_ends(const tooth_space::OffsetSheet& sheet,
-                                                     const FinishingOptions& options, const PartDistance& distance);
+                                                     const FinishingOptions& options, const PartDistance& distance,
+                                                     std::vector<BallPass> laid);
 
 }  // namespace toothpath::ball

@@ -230,8 +230,7 @@ class Planner::Work {
     const auto distance = [&](const Vec3& centre) {
       return part_.nearest(centre, f.ball_radius_mm + op.allowance_mm + 0.01).distance;
     };
-    if (f.regions[path::Region::fillet])
-      for (auto& pass : plan_corner_ends(out.sheet, f, distance)) out.passes.push_back(std::move(pass));
+    for (auto& pass : plan_corner_ends(out.sheet, f, distance, out.passes)) out.passes.push_back(std::move(pass));
     out.summary.scallop_max_mm = planned->scallop_max_mm;
     out.summary.crest_lean = planned->crest_lean;
     out.summary.chord_mm = planned->worst_chord_mm;
