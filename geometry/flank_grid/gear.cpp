@@ -1,0 +1,134 @@
+#include "geometry/flank_grid/gear.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/base/angle.h"
+
+namespace toothpath::flank_grid {
+namespace {
+
+constexpr double kBelowRoot = 0.5;  // modules
+constexpr double kPlate = 2;        // modules: so thick is the body below teeth whose ends stop at one height
+
+class FlankGridPart final : public tooth_space::ToothedPart {
+ public:
+  explicit FlankGridPart(FlankGridGear gear) : gear_(std::move(gear)) {}
+
+  [[nodiscard]] int teeth() const override { return gear_.parameters().teeth; }
+  [[nodiscard]] int zones() const override { return 1; }
+  [[nodiscard]] const tooth_space::ToothSpace& space(int /*zone*/) const override { return gear_.space(); }
+  [[nodiscard]] double module_mm() const override { return gear_.module_mm(); }
+  [[nodiscard]] double lowest_root() const override {
+    const auto& ring = gear_.space().outline();
+    return std::min(gear_.root(ring.s_from), gear_.root(ring.s_to));
+  }
+  [[nodiscard]] std::optional<double> groove_floor() const override { return {}; }
+  [[nodiscard]] double blank_top() const override {
+    const auto& ring = gear_.space().outline();
+    return std::max(gear_.space().tip(ring.s_from), gear_.space().tip(ring.s_to));
+  }
+  [[nodiscard]] bool in_blank(const Vec3& p) const override {
+    const auto& ring = gear_.space().outline();
+    const double s = ring.chart.along(p);
+    return s >= ring.s_from && s <= ring.s_to && ring.chart.up(p) <= gear_.space().tip(s) &&
+           radius(p) >= 0.5 * gear_.parameters().bore_diameter_mm;
+  }
+
+ private:
+  FlankGridGear gear_;
+};
+
+}  // namespace
+
+double FlankGridGear::root(double s) const {
+  const Meridian& m = space().kernel().root;
+  const auto& chart = space().outline().chart;
+  const Vec3 a(m.start.x(), 0, m.start.y()), way(m.along.x(), 0, m.along.y());
+  return chart.up(a) + (s - chart.along(a)) * chart.up(Vec3::UnitX(), way) / chart.along(Vec3::UnitX(), way);
+}
+
+double FlankGridGear::module_mm() const {
+  const auto& ring = space().outline();
+  const auto r = [&](double s) { return ring.chart.r(s, 0.5 * (root(s) + space().tip(s))); };
+  return 2 * std::max(r(ring.s_from), r(ring.s_to)) / parameters_.teeth;
+}
+
+std::vector<Refusal> FlankGridGear::make_body() {
+  const auto& ring = space().outline();
+  const tooth_space::Chart& chart = ring.chart;
+  const double below = kBelowRoot * module_mm();
+  const auto end = [&](double s) { return Vec2(chart.r(s, root(s) - below), chart.z(s, root(s) - below)); };
+  const Vec2 to = end(ring.s_to), from = end(ring.s_from);
+  const double bore = 0.5 * parameters_.bore_diameter_mm, hub = 0.5 * parameters_.hub_diameter_mm,
+               length = parameters_.hub_length_mm, inner = std::min(to.x(), from.x());
+  const bool flat = std::abs(to.y() - from.y()) < kPlate * module_mm();
+  const bool far_from = from.y() > to.y();  // the hub stands there
+  const double hub_limit = flat ? std::max(to.x(), from.x()) : (far_from ? from : to).x();
+  std::vector<Refusal> refusals;
+  if (!(inner > 0 && bore < inner))
+    refusals.push_back({"bore_diameter", fail("bore_diameter = {:.4f} mm is not below {:.4f} mm, the body under the "
+                                              "teeth",
+                                              2 * bore, 2 * inner)});
+  if (length > 0 && !(hub > bore && hub < hub_limit))
+    refusals.push_back(
+        {"hub_diameter", fail("hub_diameter = {:.4f} mm is not between the bore, {:.4f} mm, and {:.4f} mm, the body",
+                              2 * hub, 2 * bore, 2 * hub_limit)});
+  if (!refusals.empty()) return refusals;
+  // From the end at s_to inwards along the front, and back along the other side; one of them carries the hub.
+  std::vector<Vec2> line{to};
+  const auto add = [&](double r, double z) { line.emplace_back(r, z); };
+  if (flat) {
+    // A plate below teeth that stand upright, on the side of z where their body lies.
+    const double sense = chart.cosine > 0 ? -1 : 1,
+                 bottom = sense * std::max(sense * to.y(), sense * from.y()) + sense * kPlate * module_mm(),
+                 back = bottom + sense * length;
+    const bool outside = to.x() > from.x();
+    add(std::max(to.x(), from.x()), bottom);
+    if (length > 0) add(hub, bottom), add(hub, back);
+    add(bore, back);
+    add(bore, (outside ? from : to).y());
+    if (!outside) std::reverse(line.begin() + 1, line.end());
+  } else {
+    const double front = far_from ? to.y() : to.y() + length, back = far_from ? from.y() + length : from.y();
+    if (!far_from && length > 0) add(hub, to.y()), add(hub, front);
+    add(bore, front);
+    add(bore, back);
+    if (far_from && length > 0) add(hub, back), add(hub, from.y());
+  }
+  add(from.x(), from.y());
+  body_ = std::move(line);
+  return {};
+}
+
+Expected<FlankGridGear, std::vector<Refusal>> FlankGridGear::make(const FlankGridParameters& parameters) {
+  auto fitted = fit_grid(parameters);
+  if (!fitted) return std::move(fitted.error());
+  FlankGridGear gear;
+  gear.parameters_ = parameters;
+  gear.grid_ = std::move(*fitted);
+  if (auto refusals = gear.make_body(); !refusals.empty()) return refusals;
+  return gear;
+}
+
+tooth_space::ToothedSolid drawn_solid(const FlankGridGear& gear) {
+  const auto& ring = gear.space().outline();
+  tooth_space::ToothedSolid out;
+  out.teeth = gear.parameters().teeth;
+  out.module_mm = gear.module_mm();
+  out.lowest_root = std::min(gear.root(ring.s_from), gear.root(ring.s_to));
+  out.ways_out = {"a lower tip leaves a wider land", "a smaller fillet_radius leaves a wider land", ""};
+  out.rings.push_back({&gear.space(), 0});
+  auto& corners = out.corners.emplace_back();
+  for (const Vec2& rz : gear.body()) {
+    const Vec3 p(rz.x(), 0, rz.y());
+    corners.push_back({ring.chart.along(p), ring.chart.up(p)});
+  }
+  return out;
+}
+
+std::shared_ptr<const tooth_space::ToothedPart> part_of(const FlankGridGear& gear) {
+  return std::make_shared<FlankGridPart>(gear);
+}
+
+}  // namespace toothpath::flank_grid
