@@ -18,6 +18,7 @@ constexpr double kBelow =
     2;  // a place between those of a grid lies at most so many differences to its neighbours below
 constexpr int kFirstHalvings = 4;   // before low places are compared with each other
 constexpr double kEarlier = 1e-11;  // rad: a place that is met less earlier is no better
+constexpr double kLedOn = 0.25;     // of a step: a place that edges bring back to less has not led on
 
 /// From a place near by where one is known; updated by who asks.
 std::optional<bevel_gear::BevelInverse> inverse_from(const bevel_gear::BevelWall<double>& wall, double ell,
@@ -185,7 +186,7 @@ void BevelPair::downhill(int half, int sigma, double phi_2, Descent& from, int h
     if (e) from.rise = std::max(from.rise, *e - from.at.error);
     if (!e || !(*e < from.at.error - kEarlier)) return false;
     from.at = {*e, place.x(), place.y()};
-    return true;
+    return (place - centre).cwiseQuotient(from.step).lpNorm<Eigen::Infinity>() >= kLedOn;
   };
   Vec2 last = Vec2::Zero();  // way that led on: it is tried first
   while (from.halved < halvings) {
@@ -195,7 +196,8 @@ void BevelPair::downhill(int half, int sigma, double phi_2, Descent& from, int h
     if (!moved)
       for (int k = 0; k < 9; ++k)
         if (const Vec2 way(k / 3 - 1, k % 3 - 1); !way.isZero() && earlier(centre, way)) moved = true, last = way;
-    // On along what is found, by steps as long as at the beginning again.
+    // On along what is found, by steps as long as at the beginning again. Steps that go square to an edge slide along
+    // it by next to nothing: what they find is kept, but shorter ones are needed.
     if (!moved) from.step /= 2, ++from.halved;
     else if (from.halved > 0) from.step *= 2, --from.halved;
   }
