@@ -199,12 +199,12 @@ Expected<CylindricalGear, std::vector<Refusal>> CylindricalGear::make(const Cyli
 
 CylindricalLimits limits_of(const InvoluteSpace& space) {
   const auto& w = space.kernel();
-  const tooth_space::SpaceLimits limits = tooth_space::limits_at(space, -0.5 * (w.z_from + w.z_to), -1);
+  const double s = -0.5 * (w.z_from + w.z_to);
   CylindricalLimits out;
   out.form_diameter_mm = 2 * w.r_b * std::sqrt(1 + w.theta_f * w.theta_f);
   out.top_land_mm = 2 * w.r_a * (kPi / w.teeth - w.eta(w.theta_a));
-  out.fillet_radius_min_mm = limits.fillet_radius_min_mm;
-  out.root_ball_radius_mm = limits.root_ball_radius_mm;
+  out.fillet_radius_min_mm = tooth_space::fillet_radius_min_mm(space, s, -1);
+  out.root_ball_radius_mm = tooth_space::root_ball_radius_mm(space, s);
   const double half_way = w.theta_at(0.5 * (0.5 * out.form_diameter_mm + w.r_a));
   out.mid_flank_radius_mm = w.r_b * half_way / w.cos_bb;
   return out;

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "geometry/base/angle.h"
+#include "geometry/tooth_space/limits.h"
 
 namespace toothpath::straight_bevel {
 namespace {
@@ -15,7 +16,6 @@ using tooth_space::Piece;
 
 constexpr int kLeastTeeth = 5, kMostTeeth = 2000;
 constexpr double kLeastPitchAngle = 3, kMostPitchAngle = 89.9;  // deg
-constexpr double kBelowRoot = 0.5;                              // modules
 constexpr double kElevationShare = 0.95;  // of the pressure angle, where a crown of involutes ends
 constexpr int kHalvings = 60;
 
@@ -29,6 +29,12 @@ double largest(double most, const std::function<bool(double)>& does) {
   return low;
 }
 double told(double x) { return std::floor(1e4 * x) / 1e4; }
+
+tooth_space::BevelBody body_of(const StraightBevelParameters& p, const CrownKernel<double>& w) {
+  const double slope = std::tan(w.theta_f);
+  return {p.teeth,        p.outer_transverse_module_mm, -p.dedendum_mm,    -w.R_e * slope,
+          -w.R_i * slope, p.bore_diameter_mm,           p.hub_diameter_mm, p.hub_length_mm};
+}
 
 /// Gathers what is wrong with a gear.
 class Inspection {
@@ -75,17 +81,7 @@ class Inspection {
     if (!(w.psi > 0 && w.psi * w.sin_d < 1))
       refuse("thickness_shift", "thickness_shift = {:.4f} leaves a space of {:.4f} mm on the outer pitch circle",
              gear_.thickness_shift, 2 * w.psi * w.R_e);
-    const double share = w.R_i / w.R_e, below = kBelowRoot * gear_.outer_transverse_module_mm,
-                 front = 2 * (w.R_i * w.sin_d - (gear_.dedendum_mm + below) * share * w.cos_d),
-                 back = 2 * (w.R_e * w.sin_d - (gear_.dedendum_mm + below) * w.cos_d);
-    if (!(gear_.bore_diameter_mm < front))
-      refuse("bore_diameter", "bore_diameter = {:.4f} mm is not below {:.4f} mm, the body under the small end",
-             gear_.bore_diameter_mm, front);
-    if (gear_.hub_length_mm > 0 && !(gear_.hub_diameter_mm > gear_.bore_diameter_mm && gear_.hub_diameter_mm < back))
-      refuse("hub_diameter",
-             "hub_diameter = {:.4f} mm is not between the bore, {:.4f} mm, and {:.4f} mm, the body under "
-             "the large end",
-             gear_.hub_diameter_mm, gear_.bore_diameter_mm, back);
+    if (auto bad = body_of(gear_, w).refusal(w.outline())) refusals.push_back(std::move(*bad));
     if (gear_.form != Form::spherical_involute) return;
     const double limit = kElevationShare * gear_.pressure_angle_rad,
                  tip = std::max(std::atan2(gear_.addendum_mm, w.R_e), std::atan2(h_tip, w.R_i));
@@ -138,7 +134,7 @@ class Inspection {
     const double least = gear_.least_land * gear_.outer_transverse_module_mm;
     for (const double s : {-w.R_e, -w.R_i}) {
       const double share = -s / w.R_e;  // widths shrink with the cone distance
-      const double land = top_land_mm(space, s);
+      const double land = tooth_space::top_land_mm(space, s);
       if (land >= least * share) continue;
       if (!(land > 0))
         refuse("addendum",
@@ -169,58 +165,10 @@ class Inspection {
   const StraightBevelParameters& gear_;
 };
 
-class StraightBevelPart final : public tooth_space::ToothedPart {
- public:
-  explicit StraightBevelPart(StraightBevelGear gear) : gear_(std::move(gear)) {}
-
-  [[nodiscard]] int teeth() const override { return gear_.parameters().teeth; }
-  [[nodiscard]] int zones() const override { return 1; }
-  [[nodiscard]] const tooth_space::ToothSpace& space(int /*zone*/) const override { return gear_.space(); }
-  [[nodiscard]] double module_mm() const override { return gear_.parameters().outer_transverse_module_mm; }
-  [[nodiscard]] double lowest_root() const override { return -gear_.parameters().dedendum_mm; }
-  [[nodiscard]] std::optional<double> groove_floor() const override { return {}; }
-  [[nodiscard]] double blank_top() const override {
-    const auto& ring = gear_.space().outline();
-    return std::max(gear_.space().tip(ring.s_from), gear_.space().tip(ring.s_to));
-  }
-  [[nodiscard]] bool in_blank(const Vec3& p) const override {
-    const auto& ring = gear_.space().outline();
-    const double s = ring.chart.along(p);
-    return s >= ring.s_from && s <= ring.s_to && ring.chart.up(p) <= gear_.space().tip(s) &&
-           radius(p) >= 0.5 * gear_.parameters().bore_diameter_mm;
-  }
-
- private:
-  StraightBevelGear gear_;
-};
-
-/// (s, h) of a radius and a height.
-Vec2 in_chart(const tooth_space::Chart& chart, double r, double z) {
-  const Vec3 p(r, 0, z);
-  return {chart.along(p), chart.up(p)};
-}
-/// (r, z) where an end of the teeth stops below its root.
-Vec2 end_of_face(const StraightBevelGear& gear, double s) {
-  const auto& w = gear.space().kernel();
-  const double share = -s / w.R_e,
-               h = s * std::tan(w.theta_f) - kBelowRoot * share * gear.parameters().outer_transverse_module_mm;
-  const auto& chart = gear.space().outline().chart;
-  return {chart.r(s, h), chart.z(s, h)};
-}
-
 }  // namespace
 
 double pitch_angle(int teeth, int mate_teeth, double shaft_angle_rad) {
   return std::atan2(std::sin(shaft_angle_rad), double(mate_teeth) / teeth + std::cos(shaft_angle_rad));
-}
-
-double top_land_mm(const CrownSpace& space, double s) {
-  const auto edge = space.tip_edge(-1, s);
-  if (!edge) return 0;
-  // The minus flank of the space stands at the azimuth of its own tooth plus a pitch.
-  const auto& ring = space.outline();
-  const double half_space = edge->azimuth + ring.pitch;
-  return 2 * ring.chart.r(s, space.tip(s)) * (0.5 * ring.pitch - half_space);
 }
 
 double flank_speed(const CrownKernel<double>& w, double u) {
@@ -246,43 +194,20 @@ Expected<StraightBevelGear, std::vector<Refusal>> StraightBevelGear::make(const 
   StraightBevelGear gear;
   gear.parameters_ = parameters;
   gear.space_ = std::make_shared<const CrownSpace>(kernel);
+  gear.body_ = body_of(parameters, kernel);
   inspection.lands(*gear.space_);
   if (!inspection.refusals.empty()) return std::move(inspection.refusals);
   return gear;
 }
 
-std::array<double, 2> body_ends(const StraightBevelGear& gear) {
-  const auto& ring = gear.space().outline();
-  return {end_of_face(gear, ring.s_to).y(), end_of_face(gear, ring.s_from).y() + gear.parameters().hub_length_mm};
-}
-
 tooth_space::ToothedSolid drawn_solid(const StraightBevelGear& gear) {
-  const StraightBevelParameters& p = gear.parameters();
-  const auto& ring = gear.space().outline();
-  const tooth_space::Chart& chart = ring.chart;
-  const Vec2 front = end_of_face(gear, ring.s_to), back = end_of_face(gear, ring.s_from);
-  const double bore = 0.5 * p.bore_diameter_mm, hub = 0.5 * p.hub_diameter_mm;
-  tooth_space::ToothedSolid out;
-  out.teeth = p.teeth;
-  out.module_mm = p.outer_transverse_module_mm;
-  out.lowest_root = -p.dedendum_mm;
+  tooth_space::ToothedSolid out = tooth_space::bevel_solid(gear.space(), gear.body());
   out.ways_out = {"less addendum leaves a wider land", "a smaller fillet_radius leaves a wider land", ""};
-  out.rings.push_back({&gear.space(), 0});
-  std::vector<Vec2>& corners = out.corners.emplace_back();
-  const auto add = [&](double r, double z) { corners.push_back(in_chart(chart, r, z)); };
-  add(front.x(), front.y());
-  add(bore, front.y());
-  add(bore, back.y() + p.hub_length_mm);
-  if (p.hub_length_mm > 0) {
-    add(hub, back.y() + p.hub_length_mm);
-    add(hub, back.y());
-  }
-  add(back.x(), back.y());
   return out;
 }
 
 std::shared_ptr<const tooth_space::ToothedPart> part_of(const StraightBevelGear& gear) {
-  return std::make_shared<StraightBevelPart>(gear);
+  return tooth_space::bevel_part(std::make_shared<const CrownSpace>(gear.space()), gear.body());
 }
 
 }  // namespace toothpath::straight_bevel

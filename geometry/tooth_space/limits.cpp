@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/base/angle.h"
+
 namespace toothpath::tooth_space {
 namespace {
 
@@ -14,11 +16,11 @@ std::optional<double> tip_u(const ToothSpace& space, int side, double s) {
   return edge ? std::optional(edge->u) : std::nullopt;
 }
 
-/// Least distance from a place to the walls, less `radius`.
-double room(const ToothSpace& space, double s, const Vec3& centre, double radius) {
+/// Least distance from a place to the wall of a side, less `radius`.
+double room(const ToothSpace& space, double s, int side, const Vec3& centre, double radius) {
   constexpr int kStarts = 9;
   double least = INFINITY;
-  for (const Piece piece : {Piece::fillet_plus, Piece::flank_plus, Piece::fillet_minus, Piece::flank_minus}) {
+  for (const Piece piece : {fillet_of(side), flank_of(side)}) {
     Borders b = space.borders(piece);
     if (is_flank(piece)) {
       const auto tip = tip_u(space, side_of(piece), s);
@@ -57,6 +59,12 @@ std::optional<PatchPoint> place_at(const ToothSpace& space, Piece piece, double 
   return {};
 }
 
+double top_land_mm(const ToothSpace& space, double s) {
+  const auto plus = space.tip_edge(1, s), minus = space.tip_edge(-1, s);
+  if (!plus || !minus) return 0;
+  return space.outline().chart.r(s, space.tip(s)) * wrapped(plus->azimuth - minus->azimuth);
+}
+
 std::optional<PatchPoint> middle_of_flank(const ToothSpace& space, int side, double s) {
   const Piece piece = flank_of(side);
   const auto tip = tip_u(space, side, s);
@@ -77,11 +85,10 @@ std::optional<PatchPoint> middle_of_flank(const ToothSpace& space, int side, dou
   return q;
 }
 
-SpaceLimits limits_at(const ToothSpace& space, double s, int side) {
-  constexpr int kPlaces = 65, kDoublings = 10;
-  SpaceLimits out;
+double fillet_radius_min_mm(const ToothSpace& space, double s, int side) {
+  constexpr int kPlaces = 65;
   // The curvature of a fillet grows towards the root or has one top on the way: the best of a grid, closed in on.
-  const Piece fillet = side > 0 ? Piece::fillet_plus : Piece::fillet_minus;
+  const Piece fillet = fillet_of(side);
   const Borders b = space.borders(fillet);
   const auto hollow = [&](double u) {
     const auto q = place_at(space, fillet, u, s);
@@ -98,18 +105,32 @@ SpaceLimits limits_at(const ToothSpace& space, double s, int side) {
     (hollow(a) < hollow(c) ? low : high) = hollow(a) < hollow(c) ? a : c;
   }
   most = std::max(most, hollow(0.5 * (low + high)));
-  if (most > 0) out.fillet_radius_min_mm = 1 / most;
-  const auto root = place_at(space, Piece::root, 0.5, s);
-  if (!root) return out;
-  const auto fits = [&](double R) { return room(space, s, root->p + R * root->n, R) >= 0; };
-  double fit = 0, stuck = std::max(space.tip(s) - space.outline().chart.up(root->p), 1e-6);
-  for (int k = 0; k < kDoublings && fits(stuck); ++k) stuck *= 2;
-  for (int k = 0; k < kHalvings; ++k) {
-    const double middle = 0.5 * (fit + stuck);
-    (fits(middle) ? fit : stuck) = middle;
+  return most > 0 ? 1 / most : 0;
+}
+
+double root_ball_radius_mm(const ToothSpace& space, double s) {
+  constexpr int kDoublings = 10, kPlaces = 14;
+  constexpr double kAlike = 1e-7;  // mm
+  double from = 0, to = 1, largest = 0;
+  // From the middle of the root away from the wall that stops the ball first.
+  for (int n = 0; n < kPlaces; ++n) {
+    const double u = 0.5 * (from + to);
+    const auto root = place_at(space, Piece::root, u, s);
+    if (!root) break;
+    const auto at = [&](int side, double R) { return room(space, s, side, root->p + R * root->n, R); };
+    const auto fits = [&](double R) { return at(1, R) >= 0 && at(-1, R) >= 0; };
+    double fit = 0, stuck = std::max(space.tip(s) - space.outline().chart.up(root->p), 1e-6);
+    for (int k = 0; k < kDoublings && fits(stuck); ++k) stuck *= 2;
+    for (int k = 0; k < kHalvings && stuck - fit > 1e-12 * stuck; ++k) {
+      const double middle = 0.5 * (fit + stuck);
+      (fits(middle) ? fit : stuck) = middle;
+    }
+    largest = std::max(largest, fit);
+    const double plus = at(1, fit), minus = at(-1, fit);
+    if (std::abs(plus - minus) < kAlike) break;
+    (plus < minus ? from : to) = u;
   }
-  out.root_ball_radius_mm = fit;
-  return out;
+  return largest;
 }
 
 }  // namespace toothpath::tooth_space

@@ -6,13 +6,13 @@
 
 namespace toothpath::tooth_space {
 
-/// At one station. mm; 0 where a piece has no place there.
-struct SpaceLimits {
-  double fillet_radius_min_mm = 0;  ///< least concave radius of the fillet of a side
-  double root_ball_radius_mm = 0;   ///< of the largest ball that stands on the middle of the root between the walls
-};
-/// @param side  whose fillet
-[[nodiscard]] SpaceLimits limits_at(const ToothSpace& space, double s, int side);
+/// Least concave radius of the fillet of a side at s; 0 where it has no place. mm
+[[nodiscard]] double fillet_radius_min_mm(const ToothSpace& space, double s, int side);
+/// Radius of the largest ball that touches the root at s between the walls; 0 where the root has no place. mm
+[[nodiscard]] double root_ball_radius_mm(const ToothSpace& space, double s);
+
+/// Arc of the top land between two spaces on the tip surface at s; 0 where the flanks do not reach that. mm
+[[nodiscard]] double top_land_mm(const ToothSpace& space, double s);
 
 /// The place of a piece at u and s; nothing where it is not found.
 [[nodiscard]] std::optional<PatchPoint> place_at(const ToothSpace& space, Piece piece, double u, double s);

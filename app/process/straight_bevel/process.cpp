@@ -1,10 +1,8 @@
 #include "app/process/straight_bevel/process.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "app/process/milled/toothed_process.h"
+#include "app/process/milled/bevel_gear.h"
 #include "app/process/straight_bevel/limits.h"
 #include "app/report/svg/html_text.h"
 #include "geometry/base/angle.h"
@@ -29,28 +27,14 @@ std::string gear_words(const StraightBevelGear& gear) {
 }
 
 milled::ToothedGear toothed(StraightBevelGear made) {
-  const auto owner = std::make_shared<const StraightBevelGear>(std::move(made));
-  const StraightBevelGear& gear = *owner;
-  const StraightBevelParameters& p = gear.parameters();
-  const CrownSpace& space = gear.space();
-  const auto& ring = space.outline();
-  const auto r = [&](double s, double h) { return ring.chart.r(s, h); };
-  const auto z = [&](double s, double h) { return ring.chart.z(s, h); };
-  const double tip_from = space.tip(ring.s_from), tip_to = space.tip(ring.s_to),
-               root = ring.s_to * std::tan(space.kernel().theta_f);
-  const double outer = std::max(r(ring.s_from, tip_from), r(ring.s_to, tip_to)),
-               top = std::min(z(ring.s_from, tip_from), z(ring.s_to, tip_to)), bottom = body_ends(gear)[1];
-  milled::ToothedGear out;
-  out.part = part_of(gear);
-  out.solid = drawn_solid(gear);
-  out.owner = owner;
-  out.facts = {p.teeth, 2 * outer, 2 * outer, {}};
-  out.body = {{outer, top, bottom}, {outer, 0, bottom, top, proof::Roof(*out.part)}};
-  out.outline = {r(ring.s_to, root), outer, top, z(ring.s_from, -p.dedendum_mm), bottom, gear_words(gear)};
+  const auto gear = std::make_shared<const StraightBevelGear>(std::move(made));
+  const StraightBevelParameters& p = gear->parameters();
+  milled::ToothedGear out =
+      milled::bevel_gear(gear, part_of(*gear), drawn_solid(*gear), gear->body(), gear_words(*gear));
   out.subtitle = fmt::format("straight bevel gear z {}, outer module {} mm, {}, pitch angle {:.4f} deg", p.teeth,
                              svg::short_number(p.outer_transverse_module_mm), form_of(p), degrees(p.pitch_angle_rad));
-  out.limits_json = [owner] { return limits_json(*owner); };
-  out.limit_charts = {limit_chart(gear)};
+  out.limits_json = [gear] { return limits_json(*gear); };
+  out.limit_charts = {limit_chart(*gear)};
   return out;
 }
 
