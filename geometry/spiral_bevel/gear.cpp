@@ -1,0 +1,351 @@
+#include "geometry/spiral_bevel/gear.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/base/angle.h"
+#include "geometry/spiral_bevel/set_up.h"
+#include "geometry/tooth_space/limits.h"
+
+namespace toothpath::spiral_bevel {
+namespace {
+
+using tooth_space::Piece;
+
+constexpr int kLeastTeeth = 5, kMostTeeth = 2000, kStations = 9, kHeights = 13;
+constexpr double kSameLine = 0.005;                // mm over the face: what may differ of what is stated twice
+constexpr double kLeastRoll = 0.5, kMostRoll = 2;  // ratio of roll times the sine of the pitch angle
+constexpr double kWrongHand = -5 * kDegree;
+constexpr std::size_t kMostModified = 7;
+
+double told(double x) { return std::floor(1e4 * x) / 1e4; }
+const char* blade_of(std::size_t flank) { return flank == 0 ? "outside" : "inside"; }
+int side_of(const CutterKernel& k, std::size_t flank) { return (flank == 0 ? 1 : -1) * k.hand; }
+
+double station(const CutterKernel& k, int n) { return -k.R_e + (k.R_e - k.R_i) * n / (kStations - 1); }
+
+/// Lowest place of the root at s.
+double lowest(const CutterSpace& space, double s) {
+  constexpr int kAcross = 8;
+  double least = INFINITY;
+  for (int n = 0; n <= kAcross; ++n)
+    if (const auto q = tooth_space::place_at(space, Piece::root, double(n) / kAcross, s))
+      least = std::min(least, space.outline().chart.up(q->p));
+  return least;
+}
+
+tooth_space::BevelBody body_of(const SpiralBevelParameters& p, const CutterSpace& space) {
+  tooth_space::BevelBody body;
+  body.teeth = p.teeth;
+  body.module_mm = 2 * p.outer_cone_distance_mm * std::sin(p.pitch_angle_rad) / p.teeth;
+  body.root_back = lowest(space, space.outline().s_from);
+  body.root_front = lowest(space, space.outline().s_to);
+  body.lowest_root = std::min(body.root_back, body.root_front);
+  if (space.kernel().root != RootForm::cone)
+    for (int n = 0; n < kStations; ++n)
+      body.lowest_root = std::min(body.lowest_root, lowest(space, station(space.kernel(), n)));
+  body.bore_mm = p.bore_diameter_mm;
+  body.hub_mm = p.hub_diameter_mm;
+  body.hub_length_mm = p.hub_length_mm;
+  return body;
+}
+
+/// Gathers what is wrong with a gear.
+class Inspection {
+ public:
+  explicit Inspection(const SpiralBevelParameters& gear) : gear_(gear) {}
+
+  std::vector<Refusal> refusals;
+
+  void numbers() {
+    if (gear_.teeth < kLeastTeeth || gear_.teeth > kMostTeeth)
+      refuse("teeth", "teeth = {} is outside [{}, {}]", gear_.teeth, kLeastTeeth, kMostTeeth);
+    range("pitch_angle", degrees(gear_.pitch_angle_rad), 1, 90, " deg");
+    range("tip_angle", degrees(gear_.tip_angle_rad), degrees(gear_.pitch_angle_rad) - 45,
+          degrees(gear_.pitch_angle_rad) + 45, " deg");
+    range("outer_cone_distance", gear_.outer_cone_distance_mm, 0.1, 1e5, " mm");
+    range("face_width", gear_.face_width_mm, 0.001, 0.9 * gear_.outer_cone_distance_mm, " mm");
+    range("mean_space_width", gear_.mean_space_width_mm.value_or(1), 1e-3, 1e4, " mm");
+    for (const auto& [name, value] :
+         {std::pair{"bore_diameter", gear_.bore_diameter_mm}, std::pair{"hub_diameter", gear_.hub_diameter_mm},
+          std::pair{"hub_length", gear_.hub_length_mm}, std::pair{"backlash", gear_.backlash_mm.value_or(0)}})
+      range(name, value, 0, 1e5, " mm");
+  }
+
+  /// What the cuts are, before anything is computed from them.
+  void cuts() {
+    const std::size_t count = gear_.cuts.size();
+    const bool one = count == 1 && gear_.cuts[0].flank == Cuts::both;
+    const bool two = count == 2 && gear_.cuts[0].flank != Cuts::both && gear_.cuts[1].flank != Cuts::both &&
+                     gear_.cuts[0].flank != gear_.cuts[1].flank;
+    if (!one && !two) {
+      refuse(count == 0 ? "cut" : fmt::format("cut[{}].flank", count - 1),
+             "the cuts do not make each flank once: one with flank = \"both\", or one with \"concave\" and one with "
+             "\"convex\"");
+      return;
+    }
+    for (std::size_t i = 0; i < 2; ++i) blade(i);
+    for (std::size_t c = 0; c < count; ++c) settings(c);
+    if (!refusals.empty()) return;
+    widths(one);
+    if (one) rounding(gear_.cuts[0]);
+    else if (gear_.cuts[0].generated != gear_.cuts[1].generated)
+      refuse("cut[1].generated", "generated = {}: the other flank has {}; both flanks are cut in one way",
+             gear_.cuts[1].generated, gear_.cuts[0].generated);
+    roots();
+  }
+
+  /// The surfaces over the whole face.
+  void surfaces(const CutterSpace& space) {
+    const CutterKernel& k = space.kernel();
+    for (std::size_t i = 0; i < 2 && refusals.empty(); ++i)
+      for (int n = 0; n < kStations && refusals.empty(); ++n) flank(space, i, station(k, n));
+    if (refusals.empty()) hand(space);
+    for (int n = 0; n < kStations && refusals.empty(); ++n) across(space, station(k, n));
+  }
+
+  template <typename... Args>
+  void refuse(const std::string& key, fmt::format_string<Args...> text, Args&&... args) {
+    refusals.push_back({key, fail(text, std::forward<Args>(args)...)});
+  }
+
+ private:
+  void range(const std::string& key, double value, double low, double high, const char* unit) {
+    if (!(value >= low && value <= high))
+      refuse(key, "{} = {:.6g}{} is outside [{:.6g}, {:.6g}]{}", key.substr(key.rfind('.') + 1), value, unit, low, high,
+             unit);
+  }
+
+  void blade(std::size_t flank) {
+    const Blade& b = gear_.cuts[cut_of(gear_, flank)].blades[flank];
+    const auto key = [&](const char* name) { return cut_key(gear_, flank, name); };
+    range(key("blade_point_radius"), b.point_radius_mm, 0.1, 1e5, " mm");
+    range(key("blade_pressure_angle"), degrees(b.pressure_angle_rad), 1, 45, " deg");
+    range(key("tool_edge_radius"), b.edge_radius_mm, 1e-3, 100, " mm");
+  }
+
+  void settings(std::size_t c) {
+    const Cut& cut = gear_.cuts[c];
+    const auto key = [&](const char* name) { return fmt::format("cut[{}].{}", c, name); };
+    range(key("radial_distance"), cut.radial_distance_mm, 0, 1e5, " mm");
+    range(key("machine_root_angle"), degrees(cut.root_angle_rad), 0.5, 90, " deg");
+    range(key("center_roll_position"), degrees(cut.cradle_angle_rad), -180, 180, " deg");
+    range(key("cutter_tilt"), degrees(cut.tilt_rad), -45, 45, " deg");
+    if (cut.modified.size() > kMostModified)
+      refuse(key("modified_roll_coefficients"), "modified_roll_coefficients: {} of them, the limit is {}",
+             cut.modified.size(), kMostModified);
+    if (!cut.generated) return;
+    const double slip = cut.ratio_of_roll * std::sin(gear_.pitch_angle_rad);
+    if (!(slip >= kLeastRoll && slip <= kMostRoll))
+      refuse(
+          key("ratio_of_roll"),
+          "ratio_of_roll = {:.6g} is outside [{:.6g}, {:.6g}] about 1 / sin(pitch_angle): work per cradle, not cradle "
+          "per work",
+          cut.ratio_of_roll, kLeastRoll / std::sin(gear_.pitch_angle_rad), kMostRoll / std::sin(gear_.pitch_angle_rad));
+  }
+
+  void widths(bool one) {
+    if (one && gear_.mean_space_width_mm)
+      refuse("mean_space_width",
+             "mean_space_width contradicts flank = \"both\": the settings of one cut fix the width");
+    if (one && gear_.backlash_mm)
+      refuse("backlash", "backlash contradicts flank = \"both\": the settings of one cut fix the width of the space");
+    if (gear_.mean_space_width_mm && gear_.backlash_mm)
+      refuse("backlash", "backlash contradicts mean_space_width: give one of the two");
+    const double pitch = kTwoPi * gear_.mean_cone_distance() * std::sin(gear_.pitch_angle_rad) / gear_.teeth;
+    if (!one && !(asked_space_width(gear_) < pitch))
+      refuse(gear_.backlash_mm ? "backlash" : "mean_space_width",
+             "a space of {:.4f} mm is not below {:.4f} mm, the pitch at the mean cone distance",
+             asked_space_width(gear_), pitch);
+  }
+
+  void rounding(const Cut& cut) {
+    const auto share = [](const Blade& b) {
+      return (1 - std::sin(b.pressure_angle_rad)) / std::cos(b.pressure_angle_rad);
+    };
+    const Blade &out = cut.blades[0], &in = cut.blades[1];
+    const double width = out.point_radius_mm - in.point_radius_mm;
+    if (!(width > 0))
+      refuse("cut[0].blade_point_radius",
+             "blade_point_radius = [{:.4f}, {:.4f}] mm: the blades cross, outside must be above inside",
+             out.point_radius_mm, in.point_radius_mm);
+    else if (!(share(out) * out.edge_radius_mm + share(in) * in.edge_radius_mm <= width))
+      refuse("cut[0].tool_edge_radius",
+             "tool_edge_radius = [{:.4f}, {:.4f}] mm does not fit between the blades, {:.4f} mm apart; {:.4f} or less "
+             "would do",
+             out.edge_radius_mm, in.edge_radius_mm, width, told(width / (share(out) + share(in))));
+  }
+
+  /// Root cones as they are stated and as the cuts make them.
+  void roots() {
+    const Cut& first = gear_.cuts.front();
+    if (gear_.root_angle_rad &&
+        gear_.face_width_mm * std::abs(std::sin(*gear_.root_angle_rad - first.root_angle_rad)) > kSameLine)
+      refuse("root_angle",
+             "root_angle = {:.6f} deg differs from machine_root_angle of the cut, {:.6f} deg, by {:.4f} mm "
+             "over the face",
+             degrees(*gear_.root_angle_rad), degrees(first.root_angle_rad),
+             gear_.face_width_mm * std::abs(std::sin(*gear_.root_angle_rad - first.root_angle_rad)));
+    const double apex = -root_apex_z(first);
+    if (gear_.root_apex_mm && std::abs(*gear_.root_apex_mm - apex) * std::sin(first.root_angle_rad) > kSameLine)
+      refuse("root_apex",
+             "root_apex = {:.6f} mm: machine_center_to_crossing_point + sliding_base / sin(machine_root_angle) of "
+             "the cut is {:.6f} mm",
+             *gear_.root_apex_mm, apex);
+    if (gear_.cuts.size() < 2) return;
+    for (const double R : {gear_.outer_cone_distance_mm, gear_.outer_cone_distance_mm - gear_.face_width_mm}) {
+      const auto h = [&](const Cut& c) { return cone_height(gear_, c.root_angle_rad, root_apex_z(c), -R); };
+      const double apart = h(gear_.cuts[1]) - h(first);
+      if (std::abs(apart) <= kSameLine) continue;
+      refuse("cut[1].machine_root_angle",
+             "the root cones of the two cuts lie {:.4f} mm apart at cone distance {:.4f} mm, the limit is {:g} mm: "
+             "machine_root_angle, sliding_base or machine_center_to_crossing_point",
+             std::abs(apart), R, kSameLine);
+      return;
+    }
+  }
+
+  /// One flank with its fillet at one station.
+  void flank(const CutterSpace& space, std::size_t i, double s) {
+    const CutterKernel& k = space.kernel();
+    const CutFlank& f = k.flanks[i];
+    const int side = side_of(k, i);
+    const auto& chart = space.outline().chart;
+    const auto tip = space.tip_edge(side, s);
+    const auto low = tooth_space::place_at(space, tooth_space::fillet_of(side), kPi / 2, s),
+               join = tooth_space::place_at(space, tooth_space::fillet_of(side), f.alpha, s);
+    if (low && !(space.tip(s) > chart.up(low->p)))
+      return refuse("tip_angle", "the face cone lies {:.4f} mm below the root at cone distance {:.4f} mm",
+                    chart.up(low->p) - space.tip(s), -s);
+    if (!tip || !low || !join)
+      return refuse(
+          cut_key(gear_, i, "radial_distance"),
+          "radial_distance = {:.4f} mm: the {} blade makes no flank from root to tip at cone distance {:.4f} mm", f.S,
+          blade_of(i), -s);
+    const auto middle = space.at(tooth_space::flank_of(side), k.middle[i].x(), k.middle[i].y());
+    // Along the fillet's angle the surface goes down, along the blade up.
+    const auto sound = [&](Piece piece, double u) {
+      const auto turns = [](const tooth_space::PatchPoint& q) { return q.n.dot(q.pu.cross(q.pv)); };
+      const auto q = tooth_space::place_at(space, piece, u, s);
+      if (q && middle && turns(*q) * turns(*middle) * (is_fillet(piece) ? -1 : 1) > 0) return true;
+      refuse(cut_key(gear_, i, "blade_pressure_angle"),
+             "blade_pressure_angle = {:.4f} deg: the cutter undercuts the {} flank at cone distance {:.4f} mm{}; more "
+             "pressure angle or less depth is needed",
+             degrees(f.alpha), i == 0 ? "concave" : "convex", -s,
+             q ? fmt::format(", {:.4f} mm above the root", chart.up(q->p) - chart.up(low->p)) : std::string());
+      return false;
+    };
+    for (int n = 0; n <= kHeights; ++n)
+      if (!sound(tooth_space::fillet_of(side), f.alpha + (kPi / 2 - f.alpha) * n / kHeights)) return;
+    if (!sound(tooth_space::flank_of(side), f.u_F)) return;
+    if (!(tip->u > f.u_F))
+      return refuse(
+          "tip_angle",
+          "the face cone lies below the end of the fillet at cone distance {:.4f} mm, {:.4f} mm above the root", -s,
+          chart.up(join->p) - chart.up(low->p));
+    for (int n = 1; n <= kHeights; ++n)
+      if (!sound(tooth_space::flank_of(side), f.u_F + (tip->u - f.u_F) * n / kHeights)) return;
+    for (const double v : {k.v_at(tooth_space::flank_of(side), tip->u, s), s})
+      if (f.generated && !(f.work(f.parameter(v)).ratio > 0))
+        return refuse(
+            cut_key(gear_, i, "modified_roll_coefficients"),
+            "modified_roll_coefficients: the work stands still at a roll of {:.4f} deg, which cone distance {:.4f} mm "
+            "needs",
+            degrees(f.parameter(v)), -s);
+  }
+
+  void hand(const CutterSpace& space) {
+    const CutterKernel& k = space.kernel();
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double spiral = spiral_of(space, side_of(k, i));
+      if (spiral > kWrongHand) continue;
+      return refuse(
+          cut_key(gear_, i, "center_roll_position"),
+          "center_roll_position = {:.4f} deg makes a {}-hand gear, spiral angle {:.2f} deg; positive angles make "
+          "the hand that is asked for",
+          degrees(k.flanks[i].q), k.hand > 0 ? "left" : "right", -degrees(spiral));
+    }
+  }
+
+  void across(const CutterSpace& space, double s) {
+    const double root = root_land_mm(space, s);
+    if (!(root >= 0)) {
+      const double r = space.outline().chart.r(s, lowest(space, s)),
+                   lack = -root / r * gear_.mean_cone_distance() * std::sin(gear_.pitch_angle_rad);
+      if (gear_.cuts.size() > 1)
+        refuse(gear_.backlash_mm ? "backlash" : "mean_space_width",
+               "a space of {:.4f} mm is narrower than its root: the fillets cross by {:.4f} mm at cone distance {:.4f} "
+               "mm; "
+               "{:.4f} or more would do",
+               asked_space_width(gear_), -root, -s, std::ceil(1e4 * (asked_space_width(gear_) + lack)) / 1e4);
+      else
+        refuse("cut[0].blade_point_radius",
+               "the fillets cross by {:.4f} mm at cone distance {:.4f} mm: the blades are too close", -root, -s);
+      return;
+    }
+    const double land = tooth_space::top_land_mm(space, s);
+    if (!(land > 0))
+      refuse("tip_angle",
+             "the tooth is pointed below the face cone at cone distance {:.4f} mm: a top land of {:.4f} mm", -s, land);
+  }
+
+ public:
+  static double spiral_of(const CutterSpace& space, int side) {
+    const CutterKernel& k = space.kernel();
+    const Vec2 at = k.middle[k.index(side)];
+    const auto q = space.at(tooth_space::flank_of(side), at.x(), at.y());
+    if (!q) return 0;
+    const auto& chart = space.outline().chart;
+    // Along the pitch cone, outwards.
+    Vec3 along = q->pv * chart.up(q->p, q->pu) - q->pu * chart.up(q->p, q->pv);
+    if (chart.along(q->p, along) > 0) along = -along;
+    const double around = (q->p.x() * along.y() - q->p.y() * along.x()) / radius(q->p);
+    return k.hand * std::atan2(around, -chart.along(q->p, along));
+  }
+
+ private:
+  const SpiralBevelParameters& gear_;
+};
+
+}  // namespace
+
+Expected<SpiralBevelGear, std::vector<Refusal>> SpiralBevelGear::make(const SpiralBevelParameters& parameters) {
+  Inspection inspection(parameters);
+  inspection.numbers();
+  if (inspection.refusals.empty()) inspection.cuts();
+  if (!inspection.refusals.empty()) return std::move(inspection.refusals);
+  auto made = set_up(parameters);
+  if (auto* refusal = made.refused()) return std::vector{std::move(*refusal)};
+  SpiralBevelGear gear;
+  gear.parameters_ = parameters;
+  gear.space_width_mm_ = made->space_width_mm;
+  gear.space_ = std::make_shared<const CutterSpace>(made->kernel);
+  inspection.surfaces(*gear.space_);
+  if (!inspection.refusals.empty()) return std::move(inspection.refusals);
+  gear.body_ = body_of(parameters, *gear.space_);
+  if (auto bad = gear.body_.refusal(gear.space_->outline())) return std::vector{std::move(*bad)};
+  return gear;
+}
+
+double SpiralBevelGear::spiral_angle(int side) const { return Inspection::spiral_of(*space_, side); }
+
+double root_land_mm(const CutterSpace& space, double s) {
+  const auto plus = tooth_space::place_at(space, Piece::fillet_plus, kPi / 2, s),
+             minus = tooth_space::place_at(space, Piece::fillet_minus, kPi / 2, s);
+  if (!plus || !minus) return NAN;
+  return radius(plus->p) * wrapped(azimuth(minus->p) - azimuth(plus->p));
+}
+
+tooth_space::ToothedSolid drawn_solid(const SpiralBevelGear& gear) {
+  tooth_space::ToothedSolid out = tooth_space::bevel_solid(gear.space(), gear.body());
+  out.ways_out = {"a smaller tip_angle leaves a wider land", "a smaller tool_edge_radius leaves a wider land", ""};
+  return out;
+}
+
+std::shared_ptr<const tooth_space::ToothedPart> part_of(const SpiralBevelGear& gear) {
+  return tooth_space::bevel_part(std::make_shared<const CutterSpace>(gear.space()), gear.body());
+}
+
+}  // namespace toothpath::spiral_bevel

@@ -1,0 +1,244 @@
+#include "geometry/spiral_bevel/set_up.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/base/angle.h"
+
+namespace toothpath::spiral_bevel {
+namespace {
+
+using tooth_space::Chart;
+using tooth_space::Piece;
+
+constexpr double kWidestRoll = 1.3;  // rad from the middle of the face; what is rolled is less than half of it
+constexpr int kPlaces = 520, kHalvings = 60;
+constexpr double kSameRoot = 1e-9;  // mm and rad: two cuts leave one root cone
+
+Chart chart_of(const SpiralBevelParameters& gear) {
+  return {-std::sin(gear.pitch_angle_rad), std::cos(gear.pitch_angle_rad)};
+}
+
+CutFlank settings_of(const SpiralBevelParameters& gear, std::size_t flank) {
+  const Cut& cut = gear.cuts[cut_of(gear, flank)];
+  const Blade& blade = cut.blades[flank];
+  CutFlank f;
+  f.out = flank == 0 ? 1 : -1;
+  f.rho_0 = blade.point_radius_mm;
+  f.alpha = blade.pressure_angle_rad;
+  f.sin_a = std::sin(f.alpha);
+  f.cos_a = std::cos(f.alpha);
+  f.edge = blade.edge_radius_mm;
+  f.u_F = f.edge * (1 - f.sin_a) / f.cos_a;
+  f.rho_c = f.rho_0 - f.out * f.u_F;
+  f.generated = cut.generated;
+  f.tilted = cut.tilt_rad != 0;
+  f.S = cut.radial_distance_mm;
+  f.q = cut.cradle_angle_rad;
+  f.sin_g = std::sin(cut.root_angle_rad);
+  f.cos_g = std::cos(cut.root_angle_rad);
+  const Vec3 z_m(f.cos_g, 0, -f.sin_g);
+  f.centre = Vec3(0, 0, -cut.machine_center_mm) + cut.sliding_base_mm * z_m + Vec3(0, cut.work_offset_mm, 0);
+  const Vec3 housing = Vec3::UnitZ().cross(f.centre);
+  f.moment = {f.sin_g * housing.x() + f.cos_g * housing.z(), -housing.y(), z_m.dot(housing)};
+  double factor = cut.ratio_of_roll;
+  f.roll[0] = factor;
+  for (const double coefficient : cut.modified) {
+    const std::size_t power = f.rolls + 1;
+    factor /= double(power);
+    f.roll[f.rolls++] = -factor * coefficient;
+  }
+  const auto about_z = [](double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitZ()); };
+  if (f.tilted)
+    f.tilt = (about_z(cut.swivel_rad) * Eigen::AngleAxisd(cut.tilt_rad, Vec3::UnitY()) * about_z(-cut.swivel_rad))
+                 .toRotationMatrix();
+  return f;
+}
+
+/// The edge between fillet and root; s and where it stands about the axis before the work has turned. Nothing: there is
+/// no such place, or it lies behind the axis.
+std::optional<Vec2> edge_at(const CutFlank& f, const Chart& chart, double t) {
+  CutFlank plain = f;
+  plain.at_mean = t;
+  Vec3 p, n;
+  if (!plain.place<double>(true, kPi / 2, 0.0, p, n)) return {};
+  if (f.generated) p = Turn(plain.work(t).angle).back(p);
+  if (!(p.x() > 0)) return {};
+  return Vec2(chart.along(p), azimuth(p));
+}
+
+/// Finds where the edge passes the middle of the face: nearest to roll 0, or to the root line without a roll.
+bool find_middle(CutFlank& f, const Chart& chart, double s_mean) {
+  double best = INFINITY;
+  const double from = f.generated ? -kWidestRoll : 0, to = f.generated ? kWidestRoll : kTwoPi;
+  CutFlank tried = f;
+  for (const double branch : {1.0, -1.0}) {
+    if (!f.generated && branch < 0) continue;
+    tried.branch = branch;
+    std::optional<Vec2> before;
+    for (int k = 0; k <= kPlaces; ++k) {
+      double t = from + (to - from) * k / kPlaces, low = t - (to - from) / kPlaces, high = t;
+      const auto here = edge_at(tried, chart, t);
+      if (here && before && (here->x() - s_mean) * (before->x() - s_mean) <= 0) {
+        const bool rises = here->x() > before->x();
+        for (int h = 0; h < kHalvings; ++h) {
+          t = 0.5 * (low + high);
+          const auto middle = edge_at(tried, chart, t);
+          if (!middle) break;
+          ((middle->x() < s_mean) == rises ? low : high) = t;
+        }
+        const auto at = edge_at(tried, chart, t);
+        const double away = !at ? INFINITY : f.generated ? std::abs(t) : std::abs(at->y());
+        if (away < best && std::abs(at->x() - s_mean) < 1e-6) {
+          best = away;
+          f.branch = branch;
+          f.at_mean = t;
+        }
+      }
+      before = here;
+    }
+  }
+  if (!std::isfinite(best)) return false;
+  constexpr double kStep = 1e-5;
+  const auto a = edge_at(f, chart, f.at_mean - kStep), b = edge_at(f, chart, f.at_mean + kStep);
+  if (!a || !b || a->x() == b->x()) return false;
+  f.v_mean = s_mean;
+  f.per_s = 2 * kStep / (b->x() - a->x());
+  return true;
+}
+
+/// Along the face from its middle; not a number from where the flank ends.
+void lay_rails(CutterKernel& k, std::size_t flank) {
+  constexpr std::size_t kMiddle = CutterKernel::kRails / 2;
+  constexpr int kSteps = 8;
+  const Piece piece = tooth_space::flank_of((flank == 0 ? 1 : -1) * k.hand);
+  auto& rails = k.rails[flank];
+  const double s_mean = -0.5 * (k.R_e + k.R_i), step = (k.R_e - k.R_i) / double(CutterKernel::kRails - 1),
+               h_mean = k.tip<double>(s_mean);
+  const Vec2 none(NAN, NAN);
+  Vec2 tip = k.middle[flank];
+  for (int n = 1; n <= kSteps; ++n) tip = k.solve(piece, s_mean, h_mean * n / kSteps, tip).value_or(none);
+  // From places near the fillet, half way and at the tip.
+  const auto lay = [&](std::size_t n, const std::array<double, 3>& near, const Vec2& edge) {
+    const double s = -k.R_e + step * double(n), u_F = k.flanks[flank].u_F;
+    const Vec2 at = k.solve(piece, s, k.tip<double>(s), edge).value_or(none);
+    CutterKernel::Rail& rail = rails[n];
+    rail.u_tip = at.x();
+    rail.v = {k.solve_v(piece, u_F, s, near[0]).value_or(NAN),
+              k.solve_v(piece, 0.5 * (u_F + at.x()), s, near[1]).value_or(NAN), at.y()};
+  };
+  lay(kMiddle, {s_mean, k.middle[flank].y(), 0}, tip);
+  for (const int way : {-1, 1})
+    for (std::size_t n = kMiddle; n != (way < 0 ? 0 : CutterKernel::kRails - 1);) {
+      const CutterKernel::Rail& from = rails[n];
+      const double on = way * step;
+      n = way < 0 ? n - 1 : n + 1;
+      lay(n, {from.v[0] + on, from.v[1] + on, 0}, {from.u_tip, from.v[2] + on});
+    }
+}
+
+}  // namespace
+
+std::size_t cut_of(const SpiralBevelParameters& gear, std::size_t flank) {
+  return gear.cuts.front().makes(flank == 0 ? Cuts::concave : Cuts::convex) ? 0 : 1;
+}
+std::string cut_key(const SpiralBevelParameters& gear, std::size_t flank, const char* name) {
+  return fmt::format("cut[{}].{}", cut_of(gear, flank), name);
+}
+
+double root_apex_z(const Cut& cut) {
+  return -(cut.machine_center_mm + cut.sliding_base_mm / std::sin(cut.root_angle_rad));
+}
+
+double cone_height(const SpiralBevelParameters& gear, double angle_rad, double apex_z, double s) {
+  const Chart chart = chart_of(gear);
+  const double s_0 = -chart.sine * apex_z, h_0 = chart.cosine * apex_z;
+  return h_0 - std::tan(angle_rad - gear.pitch_angle_rad) * (s - s_0);
+}
+
+double asked_space_width(const SpiralBevelParameters& gear) {
+  if (gear.mean_space_width_mm) return *gear.mean_space_width_mm;
+  const double R_m = gear.mean_cone_distance();
+  return kPi * R_m * std::sin(gear.pitch_angle_rad) / gear.teeth +
+         0.5 * gear.backlash_mm.value_or(0) * R_m / gear.outer_cone_distance_mm;
+}
+
+Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear) {
+  SetUp out;
+  CutterKernel& k = out.kernel;
+  k.teeth = gear.teeth;
+  k.hand = gear.hand;
+  k.sin_d = std::sin(gear.pitch_angle_rad);
+  k.cos_d = std::cos(gear.pitch_angle_rad);
+  k.R_e = gear.outer_cone_distance_mm;
+  k.R_i = k.R_e - gear.face_width_mm;
+  k.tip_0 = cone_height(gear, gear.tip_angle_rad, -gear.tip_apex_mm, 0);
+  k.tip_slope = -std::tan(gear.tip_angle_rad - gear.pitch_angle_rad);
+  const Chart chart = chart_of(gear);
+  const double R_m = gear.mean_cone_distance(), r_m = R_m * k.sin_d;
+  const Cut &concave = gear.cuts[cut_of(gear, 0)], &convex = gear.cuts[cut_of(gear, 1)];
+  for (std::size_t i = 0; i < 2; ++i) {
+    k.flanks[i] = settings_of(gear, i);
+    if (!find_middle(k.flanks[i], chart, -R_m))
+      return Refusal{cut_key(gear, i, "radial_distance"),
+                     fail("radial_distance = {:.4f} mm: the {} blade does not pass the middle of the face, cone "
+                          "distance {:.4f} mm, at any roll",
+                          k.flanks[i].S, i == 0 ? "outside" : "inside", R_m)};
+  }
+  for (std::size_t i = 0; i < 2; ++i)
+    for (const double s : {-k.R_e, -k.R_i})
+      if (const double roll = k.flanks[i].parameter(s); k.flanks[i].generated && !(k.flanks[i].work(roll).ratio > 0))
+        return Refusal{
+            cut_key(gear, i, "modified_roll_coefficients"),
+            fail("modified_roll_coefficients: the work stands still or turns back at a roll of {:.4f} deg, which "
+                 "cone distance {:.4f} mm needs",
+                 degrees(roll), -s)};
+  const bool one_cone = std::abs(concave.root_angle_rad - convex.root_angle_rad) < kSameRoot &&
+                        std::abs(root_apex_z(concave) - root_apex_z(convex)) < kSameRoot;
+  const bool tilted = concave.tilt_rad != 0 || convex.tilt_rad != 0;
+  k.root = !concave.generated && &concave == &convex  ? RootForm::plane
+           : concave.generated && one_cone && !tilted ? RootForm::cone
+                                                      : RootForm::woven;
+  // Both flanks where they meet the pitch cone in the middle of the face, as they are cut.
+  std::array<double, 2> azimuths{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Piece piece = tooth_space::flank_of((i == 0 ? 1 : -1) * gear.hand);
+    Vec3 p, n;
+    (void)k.place<double>(piece, k.flanks[i].u_F, -R_m, p, n);
+    // Upwards along the blade in steps: the pitch cone may lie far above the fillet.
+    const double h_F = chart.up(p);
+    std::optional<Vec2> at = Vec2(k.flanks[i].u_F, -R_m);
+    constexpr int kSteps = 8;
+    for (int step = 1; step <= kSteps && at; ++step) at = k.solve(piece, -R_m, h_F * (kSteps - step) / kSteps, *at);
+    if (!(h_F < 0))
+      return Refusal{
+          cut_key(gear, i, "sliding_base"),
+          fail("sliding_base = {:.4f} mm: the {} flank begins {:.4f} mm above the pitch cone at cone distance "
+               "{:.4f} mm",
+               gear.cuts[cut_of(gear, i)].sliding_base_mm, i == 0 ? "concave" : "convex", h_F, R_m)};
+    if (!at)
+      return Refusal{
+          cut_key(gear, i, "blade_pressure_angle"),
+          fail("blade_pressure_angle = {:.4f} deg: the cutter undercuts the {} flank, which does not reach the "
+               "pitch cone at cone distance {:.4f} mm; more pressure angle or less depth is needed",
+               degrees(k.flanks[i].alpha), i == 0 ? "concave" : "convex", R_m)};
+    k.middle[i] = *at;
+    (void)k.place<double>(piece, at->x(), at->y(), p, n);
+    azimuths[i] = -gear.hand * azimuth(p);  // of the left hand
+    lay_rails(k, i);
+  }
+  if (&concave == &convex) {
+    out.space_width_mm = std::remainder(azimuths[0] - azimuths[1], kTwoPi) * r_m;
+    const double middle = azimuths[1] + 0.5 * std::remainder(azimuths[0] - azimuths[1], kTwoPi);
+    for (CutFlank& f : k.flanks) f.turn = -middle;
+  } else {
+    out.space_width_mm = asked_space_width(gear);
+    for (std::size_t i = 0; i < 2; ++i)
+      k.flanks[i].turn = (i == 0 ? 0.5 : -0.5) * out.space_width_mm / r_m - azimuths[i];
+  }
+  return out;
+}
+
+}  // namespace toothpath::spiral_bevel
