@@ -24,62 +24,75 @@ int quick_length(int least) {
   }
 }
 
-/// Displacements of a window under its own pressures, by a product of spectra.
+/// Displacements of a window under its own pressures, by a product of spectra. Fields are real: two of their rows are
+/// one complex row, and half of the columns tell the spectrum. That of the influence is real, as it is even.
 class WindowInfluence {
  public:
   WindowInfluence(const CellWindow& w, double compliance)
-      : window_(w), columns_(quick_length(2 * w.columns)), rows_(quick_length(2 * w.rows)) {
-    field_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0.0);
+      : window_(w),
+        columns_(quick_length(2 * w.columns)),
+        rows_(quick_length(2 * w.rows)),
+        in_(static_cast<std::size_t>(columns_)),
+        out_(in_.size()) {
+    std::vector<double> influence(in_.size() * static_cast<std::size_t>(rows_));
     for (int r = -(w.rows - 1); r < w.rows; ++r)
       for (int c = -(w.columns - 1); c < w.columns; ++c)
-        field_[index((c + columns_) % columns_, (r + rows_) % rows_)] =
+        influence[static_cast<std::size_t>((r + rows_) % rows_ * columns_ + (c + columns_) % columns_)] =
             compliance * rectangle_influence(c * w.dx, r * w.dy, w.dx / 2, w.dy / 2);
-    transform(true, rows_);
+    field_.resize(static_cast<std::size_t>(columns_ / 2 + 1) * static_cast<std::size_t>(rows_));
     spectrum_ = field_;
+    forward(influence.data(), columns_, rows_);
+    for (const Complex& value : spectrum_) scale_.push_back(value.real());
   }
 
   /// u += influence of p; both of the window's cells.
   void add(const double* p, double* u) {
-    std::fill(field_.begin(), field_.end(), Complex(0));
-    for (int r = 0; r < window_.rows; ++r)
-      for (int c = 0; c < window_.columns; ++c) field_[index(c, r)] = p[r * window_.columns + c];
-    transform(true, window_.rows);
-    for (std::size_t k = 0; k < field_.size(); ++k) field_[k] *= spectrum_[k];
-    transform(false, window_.rows);
-    for (int r = 0; r < window_.rows; ++r)
-      for (int c = 0; c < window_.columns; ++c) u[r * window_.columns + c] += field_[index(c, r)].real();
+    forward(p, window_.columns, window_.rows);
+    for (std::size_t k = 0; k < spectrum_.size(); ++k) spectrum_[k] *= scale_[k];
+    for (int c = 0; c <= columns_ / 2; ++c) fft_.inv(&field_[index(c, 0)], &spectrum_[index(c, 0)], rows_);
+    for (int r = 0; r < window_.rows; r += 2) {
+      for (int c = 0; c <= columns_ / 2; ++c) {
+        const Complex one = field_[index(c, r)], two = field_[index(c, r + 1)];
+        in_[static_cast<std::size_t>((columns_ - c) % columns_)] = {one.real() + two.imag(), two.real() - one.imag()};
+        in_[static_cast<std::size_t>(c)] = {one.real() - two.imag(), one.imag() + two.real()};
+      }
+      fft_.inv(out_.data(), in_.data(), columns_);
+      for (int c = 0; c < window_.columns; ++c) {
+        u[r * window_.columns + c] += out_[static_cast<std::size_t>(c)].real();
+        if (r + 1 < window_.rows) u[(r + 1) * window_.columns + c] += out_[static_cast<std::size_t>(c)].imag();
+      }
+    }
   }
 
  private:
+  /// Columns stand one after the other.
   [[nodiscard]] std::size_t index(int c, int r) const {
-    return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c);
+    return static_cast<std::size_t>(c) * static_cast<std::size_t>(rows_) + static_cast<std::size_t>(r);
   }
-  /// @param used  rows that hold something: forwards before, backwards behind the transform of the columns
-  void transform(bool forward, int used) {
-    const auto across = [&] {
-      in_.resize(static_cast<std::size_t>(columns_));
-      for (int r = 0; r < used; ++r) {
-        std::copy_n(field_.begin() + static_cast<std::ptrdiff_t>(index(0, r)), columns_, in_.begin());
-        forward ? fft_.fwd(out_, in_) : fft_.inv(out_, in_);
-        std::copy_n(out_.begin(), columns_, field_.begin() + static_cast<std::ptrdiff_t>(index(0, r)));
+  /// The spectrum of rows of a field, the rest of it 0.
+  void forward(const double* field, int columns, int rows) {
+    std::fill(field_.begin(), field_.end(), Complex(0));
+    for (int r = 0; r < rows; r += 2) {
+      std::fill(in_.begin(), in_.end(), Complex(0));
+      for (int c = 0; c < columns; ++c)
+        in_[static_cast<std::size_t>(c)] = {field[r * columns + c], r + 1 < rows ? field[(r + 1) * columns + c] : 0};
+      fft_.fwd(out_.data(), in_.data(), columns_);
+      for (int c = 0; c <= columns_ / 2; ++c) {
+        const Complex there = out_[static_cast<std::size_t>(c)],
+                      mirrored = std::conj(out_[static_cast<std::size_t>((columns_ - c) % columns_)]),
+                      difference = (there - mirrored) / 2.0;
+        field_[index(c, r)] = (there + mirrored) / 2.0;
+        if (r + 1 < rows) field_[index(c, r + 1)] = {difference.imag(), -difference.real()};
       }
-    };
-    const auto along = [&] {
-      in_.resize(static_cast<std::size_t>(rows_));
-      for (int c = 0; c < columns_; ++c) {
-        for (int r = 0; r < rows_; ++r) in_[static_cast<std::size_t>(r)] = field_[index(c, r)];
-        forward ? fft_.fwd(out_, in_) : fft_.inv(out_, in_);
-        for (int r = 0; r < rows_; ++r) field_[index(c, r)] = out_[static_cast<std::size_t>(r)];
-      }
-    };
-    if (forward) across(), along();
-    else along(), across();
+    }
+    for (int c = 0; c <= columns_ / 2; ++c) fft_.fwd(&spectrum_[index(c, 0)], &field_[index(c, 0)], rows_);
   }
 
   const CellWindow& window_;
   int columns_, rows_;
   Eigen::FFT<double> fft_;
-  std::vector<Complex> field_, spectrum_, in_, out_;
+  std::vector<Complex> field_, spectrum_, in_, out_;  ///< in_, out_: a row
+  std::vector<double> scale_;
 };
 
 class Search {
@@ -157,14 +170,23 @@ class Search {
     const Eigen::VectorXd of_stations = problem_.remainder * (problem_.stations * forces);
     Eigen::Map<Eigen::VectorXd>(u.data(), n) += problem_.stations.transpose() * of_stations;
   }
-  /// The images of blocks; made symmetric, as the search goes down a quadratic form.
+  /// The images of blocks; made symmetric, as the search goes down a quadratic form. Most blocks carry nothing.
   static void mirror(const CellWindow& w, const double* p, double* u) {
     const auto n = static_cast<Eigen::Index>(w.size());
-    const double area = w.dx * w.dy;
-    Eigen::VectorXd block = Eigen::VectorXd::Zero(w.images.cols());
-    for (std::size_t k = 0; k < w.size(); ++k) block(w.blocks[k]) += p[k] * area;
-    const Eigen::VectorXd back = w.images.transpose() * (Eigen::Map<const Eigen::VectorXd>(p, n) * area);
-    const Eigen::VectorXd there = w.images * block;
+    const Eigen::VectorXd forces = Eigen::Map<const Eigen::VectorXd>(p, n) * (w.dx * w.dy);
+    Eigen::VectorXd block = Eigen::VectorXd::Zero(w.images.cols()), back = block, there = Eigen::VectorXd::Zero(n);
+    Eigen::Index first = n, last = 0;
+    for (Eigen::Index k = 0; k < n; ++k) {
+      if (forces(k) == 0) continue;
+      block(w.blocks[static_cast<std::size_t>(k)]) += forces(k);
+      first = std::min(first, k), last = k + 1;
+    }
+    if (first >= last) return;
+    for (Eigen::Index b = 0; b < block.size(); ++b) {
+      const auto image = w.images.col(b);
+      if (block(b) != 0) there += image * block(b);
+      back(b) = image.segment(first, last - first).dot(forces.segment(first, last - first));
+    }
     for (std::size_t k = 0; k < w.size(); ++k) u[k] += (there(static_cast<Eigen::Index>(k)) + back(w.blocks[k])) / 2;
   }
   void balance() {
