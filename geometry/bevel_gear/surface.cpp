@@ -81,20 +81,19 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
     const double next_beta = std::clamp(beta + std::clamp(db, -farthest, farthest), lowest, highest);
     const double widest = 0.3 * (p_high - p_low);
     const double next_p = std::clamp(p + std::clamp(dp, -widest, widest), p_low, p_high);
-    const bool clipped = next_beta != beta + db || next_p != p + dp;
     const double moved = std::abs(a * (next_beta - beta)) + std::abs(d * (next_p - p));
     beta = next_beta;
     p = next_p;
-    if (moved <= 1e-13 * scale) {
-      const Vec2 at = w.generatrix(beta, p);
-      if ((clipped || n > 50) && std::hypot(at[0] - ell, at[1] - height) > 1e-9 * scale) return std::nullopt;
-      if (std::hypot(at[0] - ell, at[1] - height) > 1e-10 * scale) return std::nullopt;
-      const Vec3 q = w.point(beta, p).contact;
-      const auto centre = w.trace.centre(w.sigma, beta);
-      const double azimuth =
-          centre.e + std::atan2(q.y(), q.x() * w.trace.cos_delta + (q.z() + centre.R_c) * w.trace.sin_delta);
-      return BevelInverse{beta, p, azimuth, n + 1};
-    }
+    if (moved > 1e-7 * scale) continue;  // Newton is square: the next step would be one of rounding
+    const auto f = w.point(beta, p);
+    const ConePoint at = cone_point(f.p, w.trace.sin_delta, w.trace.cos_delta);
+    const double miss = std::hypot(at.ell - ell, at.height - height);
+    if (miss > 1e-13 * scale && moved > 1e-13 * scale) continue;
+    if (miss > 1e-10 * scale) return std::nullopt;
+    const Vec3& q = f.contact;
+    const double azimuth =
+        f.centre.e + std::atan2(q.y(), q.x() * w.trace.cos_delta + (q.z() + f.centre.R_c) * w.trace.sin_delta);
+    return BevelInverse{beta, p, azimuth, n + 1};
   }
   return std::nullopt;
 }

@@ -85,8 +85,8 @@ struct BevelWall {
 /// J_n and the curvatures at (beta, p); psi < 90 deg, F != 0.
 [[nodiscard]] BevelCurvature bevel_curvature(const BevelWall<double>& wall, double beta, double p);
 
-/// Flank parameters of the point at (ell, height): Newton, 5..8 steps, until the step moves the point by less than
-/// 1e-12 of R_0. Empty where the wall has no such point (outside the trace or the profile, or no convergence).
+/// Flank parameters of the point at (ell, height): Newton, 4..7 steps, until the wall misses it by less than 1e-13 of
+/// R_0 or steps are as small. Empty where it has no such point (outside the trace or the profile, or no convergence).
 [[nodiscard]] std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& wall, double ell, double height);
 /// The same, started from a neighbour.
 [[nodiscard]] std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& wall, double ell, double height,

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "geometry/base/angle.h"
-#include "geometry/contact/tooth_contact.h"
+#include "geometry/contact/touch_search.h"
 
 namespace toothpath::contact {
 namespace {
@@ -90,7 +90,7 @@ class Roll {
     return first_ <= last_;
   }
 
-  /// Least error over all turns: golden section about the best position. Nothing where the pinion's flank ends before.
+  /// Least error over all turns, about the best position. Nothing where the pinion's flank ends before.
   void refine(const BevelPattern& g, const BevelPlace& place, Meeting& m) const {
     std::size_t best = m.error.size();
     for (std::size_t k = 0; k < m.error.size(); ++k)
@@ -99,24 +99,10 @@ class Roll {
     m.at = (m.first + static_cast<int>(best)) * step_;
     if (best == 0 || best + 1 == m.error.size() || std::isnan(m.error[best - 1]) || std::isnan(m.error[best + 1]))
       return;
-    constexpr double kGolden = 0.6180339887498949;
-    double low = m.at - step_, high = m.at + step_;
     bevel_gear::BevelInverse start;
-    const auto ask = [&](double s) {
-      return error(g.half, place.point, s, start).value_or(std::numeric_limits<double>::infinity());
-    };
-    double a = high - kGolden * (high - low), b = low + kGolden * (high - low), at_a = ask(a), at_b = ask(b);
-    while (high - low > 1e-7 * step_) {
-      if (at_a < at_b) {
-        high = b, b = a, at_b = at_a;
-        a = high - kGolden * (high - low), at_a = ask(a);
-      } else {
-        low = a, a = b, at_a = at_b;
-        b = low + kGolden * (high - low), at_b = ask(b);
-      }
-    }
-    m.least = std::min(at_a, at_b);
-    m.at = at_a < at_b ? a : b;
+    const auto early = [&](double s) { return -error(g.half, place.point, s, start).value_or(-kNever); };
+    m.at = highest_place(early, m.at - step_, m.at + step_);
+    m.least = -early(m.at);
   }
 
   /// Least error of one pair at every position: grid, then between the grid's places.

@@ -28,8 +28,6 @@ std::optional<bevel_gear::BevelInverse> inverse_from(const bevel_gear::BevelWall
   return bevel_gear::bevel_inverse(wall, ell, height);
 }
 
-Mat3 turn_about_z(double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix(); }
-
 void change_wall(bevel_gear::BevelWall<double>& wall, const bevel_gear::BevelGear& gear, const PinionChange& change) {
   const auto& p = gear.parameters();
   const auto& c = gear.cutter_data();
@@ -85,7 +83,8 @@ Result<BevelPair> BevelPair::make(const bevel_gear::BevelGear& pinion, const bev
 }
 
 Vec3 BevelPair::turned_to_pinion(const Vec3& direction, double phi_2) const {
-  return placed_ * (turn_about_z(phi_2) * direction);
+  const double c = std::cos(phi_2), s = std::sin(phi_2), x = direction.x(), y = direction.y();
+  return placed_ * Vec3(c * x - s * y, s * x + c * y, direction.z());
 }
 Vec3 BevelPair::to_pinion(const Vec3& point, double phi_2) const { return turned_to_pinion(point, phi_2) + shift_; }
 

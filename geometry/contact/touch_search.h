@@ -1,5 +1,5 @@
 // The first touch of one flank with its pinion at one position of the gear: where on the flank, at which turn of the
-// pinion. Inside of tooth_contact.
+// pinion. Inside of tooth_contact; bevel_contact takes highest_place.
 #pragma once
 
 #include <algorithm>
