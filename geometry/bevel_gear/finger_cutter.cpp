@@ -6,6 +6,9 @@ namespace {
 
 constexpr int kBendLooks = 8;        // a smooth piece of a modified flank is looked at in so many places
 constexpr double kBendMargin = 1.1;  // what its bend may be between them
+/// Of 1 + r_0: behind so short a step of Newton, what is sought is known to rounding.
+constexpr double kLastStep = 1e-8;
+constexpr double kSteep = 0.01;  // a root is plain where the slope is above
 
 /// Place of the plain flank at this depth below the tip.
 double place_at_depth(const FingerProfile<double>& c, double depth) {
@@ -94,6 +97,8 @@ double FingerSolid::lower_surface(double rho) const {
     (q.rho < rho ? lo : hi) = p;
     const double slope = q.dS * q.sin_psi, newton = p - (q.rho - rho) / slope;
     const double next = slope > 0 && newton > lo && newton < hi ? newton : 0.5 * (lo + hi);
+    if (!c_.law && slope > kSteep && next == newton && std::abs(next - p) <= kLastStep * (1 + c_.r_0))
+      return q.x + (next - p) * q.dS * q.cos_psi;
     if (std::abs(next - p) <= 1e-14 * (1 + c_.r_0)) break;
     p = next;
   }
@@ -129,7 +134,13 @@ double FingerSolid::signed_distance(double x, double rho) const {
       normal = -dx * q.sin_psi + dr * q.cos_psi;
       const double slope = -q.dS + normal * q.dpsi;
       if (!(slope < 0)) break;
-      double next = std::clamp(p - f / slope, c_.p_C, c_.p_D);
+      const double newton = p - f / slope;
+      double next = std::clamp(newton, c_.p_C, c_.p_D);
+      // The distance changes by f times the turn of the normal: by nothing.
+      if (!c_.law && next == newton && std::abs(next - p) <= kLastStep * (1 + c_.r_0)) {
+        foot = true;
+        break;
+      }
       if (c_.law) {  // its bend jumps: the foot stays between what was found on both sides of it
         (f > 0 ? low : high) = p;
         if (!(next > low && next < high)) next = 0.5 * (low + high);
