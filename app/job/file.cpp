@@ -70,7 +70,7 @@ void read_job(toml::TableReader& root, Job& job) {
   }
   if (auto table = root.table("coolant")) job.coolant = read_coolant(*table);
   if (auto table = root.table("material")) job.material = read_material(*table);
-  if (auto table = root.table("verify")) job.verify = read_verify(*table, job.bevel_gear() != nullptr);
+  if (auto table = root.table("verify")) job.verify = read_verify(*table);
   if (auto table = root.table("program")) job.program = read_program_settings(*table);
   if (auto table = root.table("load")) {
     job.torque_Nm = table->number("torque", kTorque);
@@ -85,7 +85,7 @@ void read_job(toml::TableReader& root, Job& job) {
     job.operations.push_back(
         read_operation(table, {job.tools, job.bevel_gear() != nullptr, job.face_gear() != nullptr}));
   check_milling(root, job);
-  if (root.errors() == 0 && !job.bevel_gear()) check_regions(root, job.operations);
+  if (root.errors() == 0) check_mills(root, job);
   root.finish();
 }
 

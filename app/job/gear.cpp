@@ -160,6 +160,14 @@ bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear, const s
   p.backlash_mm = gear.number_or("backlash", kLengthOrZero, p.backlash_mm);
   if (module && p.backlash_mm >= *module)
     gear.refuse("backlash", "backlash = {} mm is not below outer_transverse_module = {} mm", p.backlash_mm, *module);
+  if (auto mill = gear.table("mill")) {
+    p.mill.emplace();
+    p.mill->module_mm = mill->number("module", kModule).value_or(0);
+    p.mill->tip_radius_mm = mill->number("tip_radius", kLength).value_or(0);
+    p.mill->rack_depth_mm = mill->number("rack_depth", kLengthOrZero).value_or(0);
+    p.mill->profile_height_mm = mill->number("profile_height", kLength).value_or(0);
+    mill->finish();
+  }
   p.modifications = read_modifications(gear, directory);
   optional_cylinder(gear, "hub", p.hub_diameter_mm, p.hub_length_mm);
   optional_cylinder(gear, "shaft", p.shaft_diameter_mm, p.shaft_length_mm);

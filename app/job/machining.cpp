@@ -188,7 +188,7 @@ struct OperationWord {
   const char* word;
   path::OperationType type;
   tool::CutterUse needs;
-  bool bevel_gear;
+  bool finger;  ///< of equal-base-circle bevel gears alone
 };
 constexpr OperationWord kOperationWords[] = {
     {"roughing", path::OperationType::roughing, tool::CutterUse::layers, false},
@@ -199,10 +199,10 @@ constexpr OperationWord kOperationWords[] = {
     {"finger_finishing", path::OperationType::finger_finishing, tool::CutterUse::tooth_form, true}};
 
 /// Nothing where the type is none of those that mill such a gear.
-const OperationWord* read_type(toml::TableReader& table, bool bevel_gear) {
+const OperationWord* read_type(toml::TableReader& table, bool finger) {
   std::vector<std::string_view> words;
   for (const auto& entry : kOperationWords)
-    if (entry.bevel_gear == bevel_gear) words.emplace_back(entry.word);
+    if (finger || !entry.finger) words.emplace_back(entry.word);
   const auto word = table.variant("type", words);
   if (!word) return nullptr;
   return std::find_if(std::begin(kOperationWords), std::end(kOperationWords),
@@ -242,7 +242,7 @@ void compare_with_tool(toml::TableReader& table, const path::MillingOperation& o
 
 path::MillingOperation read_operation(toml::TableReader& table, const OperationContext& context) {
   const std::vector<tool::ToolAssembly>& tools = context.tools;
-  const OperationWord* word = read_type(table, context.bevel_gear);
+  const OperationWord* word = read_type(table, context.finger);
   path::MillingOperation operation;
   const tool::ToolAssembly* tool = nullptr;
   if (const auto number = table.integer("tool", kToolNumber)) {
@@ -260,8 +260,8 @@ path::MillingOperation read_operation(toml::TableReader& table, const OperationC
   if (word->type == path::OperationType::finger_roughing)
     operation.ridge_mm = table.number("ridge", {0.001, 10, " mm"}).value_or(0);
   else if (word->type == path::OperationType::line_milling) operation = read_line_operation(table);
-  else if (!word->bevel_gear) operation = read_ball_operation(table, word->type, context);
-  if (!word->bevel_gear) operation.climb = table.boolean_or("climb", operation.climb);
+  else if (!word->finger) operation = read_ball_operation(table, word->type, context);
+  if (!word->finger) operation.climb = table.boolean_or("climb", operation.climb);
   operation.type = word->type;
   operation.speed_rpm = speed;
   operation.feed_mm_min = feed;
@@ -278,6 +278,9 @@ path::MillingOperation read_operation(toml::TableReader& table, const OperationC
   return operation;
 }
 
+namespace {
+
+/// Where there is finishing, every region needs an operation that finishes it.
 void check_regions(toml::TableReader& root, const std::vector<path::MillingOperation>& operations) {
   const bool finished = std::any_of(operations.begin(), operations.end(), [](const auto& o) { return o.finishes(); });
   if (!finished) return;
@@ -291,6 +294,25 @@ void check_regions(toml::TableReader& root, const std::vector<path::MillingOpera
         "the finishing operations leave out: {}; every region (flank, fillet, root) needs one that finishes it: "
         "a finishing with that region, for the flank also a line_milling without allowance",
         missing);
+}
+
+}  // namespace
+
+void check_mills(toml::TableReader& root, const Job& job) {
+  const auto finger = [](const path::MillingOperation& o) {
+    return o.type == path::OperationType::finger_roughing || o.type == path::OperationType::finger_finishing;
+  };
+  const auto fingers = std::count_if(job.operations.begin(), job.operations.end(), finger);
+  if (fingers == 0) {
+    check_regions(root, job.operations);
+  } else if (fingers != std::ssize(job.operations)) {
+    root.refuse("operation",
+                "finger mills and ball mills do not cut one gear in one job: a job each, the second with the stock of "
+                "the first");
+  } else if (job.verify.unreached_mm) {
+    root.table("verify")->refuse(
+        "unreached", "unreached is asked of the ball that finishes a gear: what a finger mill leaves is its ridge");
+  }
 }
 
 joints::Setup read_setup(toml::TableReader& table, Job& job) {
@@ -413,15 +435,12 @@ ContactSettings read_contact(toml::TableReader& table, const Job& job) {
   return c;
 }
 
-VerifySettings read_verify(toml::TableReader& table, bool bevel) {
+VerifySettings read_verify(toml::TableReader& table) {
   VerifySettings verify;
   verify.gouge_tolerance_mm = table.number_or("gouge_tolerance", {1e-5, 0.1, " mm"}, verify.gouge_tolerance_mm);
   verify.all_teeth = table.word_or("teeth", {"one", "all"}, "one") == "all";
   verify.clearance_mm = table.optional_number("clearance", {0, 50, " mm"});
-  if (!bevel) verify.unreached_mm = table.optional_number("unreached", {0, 50, " mm"});
-  else if (table.misplaced("unreached"))
-    table.refuse("unreached",
-                 "unreached is asked of the ball that finishes a gear: what a finger mill leaves is its ridge");
+  verify.unreached_mm = table.optional_number("unreached", {0, 50, " mm"});
   table.finish();
   return verify;
 }

@@ -27,21 +27,22 @@ struct ToolContext {
 /// What an [[operation]] is read in.
 struct OperationContext {
   const std::vector<tool::ToolAssembly>& tools;
-  bool bevel_gear = false;        ///< finger operations; else those of ball mills and sides of mills
+  bool finger = false;            ///< operations of finger mills, too
   bool teeth_along_radii = true;  ///< as those of a face gear: `tool_axis` counts them
 };
 /// One [[operation]]; its `tool` becomes an index into the tools.
 [[nodiscard]] path::MillingOperation read_operation(toml::TableReader& table, const OperationContext& context);
 
-/// Refused, at the operations: regions that no finishing operation covers, where anything finishes at all.
-void check_regions(toml::TableReader& root, const std::vector<path::MillingOperation>& operations);
+/// Refused, at the operations: finger mills and other mills in one job; regions that no finishing operation covers,
+/// where anything but fingers finishes; what is asked of ball mills alone.
+void check_mills(toml::TableReader& root, const Job& job);
 
 /// [setup], with the file of what was measured where it names one. @param job  its file and gear are known already;
 /// its warnings say where the part stands
 [[nodiscard]] joints::Setup read_setup(toml::TableReader& table, Job& job);
 [[nodiscard]] shaper::Shaping read_shaping(toml::TableReader& table);
 [[nodiscard]] ContactSettings read_contact(toml::TableReader& table, const Job& job);
-[[nodiscard]] VerifySettings read_verify(toml::TableReader& table, bool bevel);
+[[nodiscard]] VerifySettings read_verify(toml::TableReader& table);
 [[nodiscard]] ProgramSettings read_program_settings(toml::TableReader& table);
 [[nodiscard]] MaterialSettings read_material(toml::TableReader& table);
 /// `chip_load` and `max_engagement` of an operation, where they are.

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "geometry/bevel_gear/flank_law.h"
+#include "geometry/bevel_gear/parameters.h"
 #include "geometry/bevel_gear/trace.h"
 
 namespace toothpath::bevel_gear {
@@ -22,7 +23,13 @@ namespace toothpath::bevel_gear {
 template <typename S>
 S sinc(const S& u) {
   using std::sin;
-  if constexpr (bevel_detail::kSeriesSuffices<S>) {
+  if constexpr (bevel_detail::kEncloses<S>) {
+    // The series up to where |u| = 1 is told to 1e-18.
+    const S q = u * u;
+    S sum(1);
+    for (int k = 9; k > 0; --k) sum = S(1) - q * sum / S(2.0 * k * (2 * k + 1));
+    return sum;
+  } else if constexpr (bevel_detail::kSeriesSuffices<S>) {
     if (bevel_detail::magnitude(u) < S(0.02)) {
       const S q = u * u;
       return S(1) - q * S(1.0 / 6) * (S(1) - q * S(1.0 / 20) * (S(1) - q * S(1.0 / 42)));
@@ -40,14 +47,6 @@ struct ProfilePoint {
   S sin_psi{}, cos_psi{};
   S dpsi{};  ///< d psi / dp
   S dS{};    ///< arc length per p
-};
-
-/// What a finger mill is ordered by; lengths mm.
-struct FingerCutterData {
-  double module_mm = 0;          ///< m_nj
-  double tip_radius_mm = 0;      ///< r_t
-  double rack_depth_mm = 0;      ///< h_C
-  double profile_height_mm = 0;  ///< x_D
 };
 
 template <typename S>
@@ -79,10 +78,11 @@ struct FingerProfile {
     return q;
   }
   /// Point of the flank above C: the involute, or what its modification makes of it.
-  [[nodiscard]] ProfilePoint<S> flank(const S& p) const {
+  [[nodiscard]] ProfilePoint<S> flank(const S& p) const { return flank(p, !(p < plain_p_C)); }
+  /// The same where the plain flank is the involute, and where it is the straight below it.
+  [[nodiscard]] ProfilePoint<S> flank(const S& p, bool on_involute) const {
     if (!law) return involute(p);
     using std::sqrt;
-    const bool on_involute = !(p < plain_p_C);
     ProfilePoint<S> q;
     if (on_involute) q = involute(p);
     else
@@ -108,27 +108,21 @@ struct FingerProfile {
     q.dS = length;
     return q;
   }
+  /// Point of the straight BC, continued.
+  [[nodiscard]] ProfilePoint<S> straight(const S& p) const {
+    return {S(x_C + (p - p_C) * cos_phi), S(rho_C + (p - p_C) * sin_phi), sin_phi, cos_phi, S(0), S(1)};
+  }
+  /// Point of the corner arc, continued, by its inclination.
+  [[nodiscard]] ProfilePoint<S> arc(const S& sin_psi, const S& cos_psi) const {
+    return {S(x_o - r_t * sin_psi), S(rho_o + r_t * cos_psi), sin_psi, cos_psi, S(S(-1) / r_t), S(1)};
+  }
   /// Point of the whole profile A..D, p_A <= p; beyond p_D the flank goes on.
   [[nodiscard]] ProfilePoint<S> at(const S& p) const {
     using std::sin, std::cos;
     if (!(p < p_C)) return flank(p);
-    ProfilePoint<S> q;
-    q.dS = S(1);
-    if (!(p < p_B)) {
-      q.x = x_C + (p - p_C) * cos_phi;
-      q.rho = rho_C + (p - p_C) * sin_phi;
-      q.sin_psi = sin_phi;
-      q.cos_psi = cos_phi;
-      q.dpsi = S(0);
-      return q;
-    }
+    if (!(p < p_B)) return straight(p);
     const S psi = phi + (p_B - p) / r_t;
-    q.sin_psi = sin(psi);
-    q.cos_psi = cos(psi);
-    q.x = x_o - r_t * q.sin_psi;
-    q.rho = rho_o + r_t * q.cos_psi;
-    q.dpsi = S(-1) / r_t;
-    return q;
+    return arc(S(sin(psi)), S(cos(psi)));
   }
   /// Radius of the straight BC, continued, at x.
   [[nodiscard]] S line_radius(const S& x) const { return rho_C + (x - x_C) * sin_phi / cos_phi; }

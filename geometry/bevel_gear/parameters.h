@@ -1,11 +1,20 @@
 // What defines an equal-base-circle bevel gear: the numbers of a job's [gear] table, in mm and rad.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "geometry/modification/modification.h"
 
 namespace toothpath::bevel_gear {
+
+/// What a finger mill is ordered by; lengths mm.
+struct FingerCutterData {
+  double module_mm = 0;          ///< m_nj
+  double tip_radius_mm = 0;      ///< r_t
+  double rack_depth_mm = 0;      ///< h_C
+  double profile_height_mm = 0;  ///< x_D
+};
 
 /// Two halves of opposite hand that meet at the apex cone distance, or one hand over the whole face.
 enum class BevelForm { herringbone, single };
@@ -30,6 +39,7 @@ struct BevelGearParameters {
   // What the blank has beside its teeth: cylinders about its axis, 0: none. The tool must not meet them.
   double hub_diameter_mm = 0, hub_length_mm = 0;      ///< behind the root of the large end
   double shaft_diameter_mm = 0, shaft_length_mm = 0;  ///< from the root of the small end towards the apex and beyond
+  std::optional<FingerCutterData> mill = {};  ///< whose envelope the walls are, where no finger mill cuts them
   std::vector<modification::Modification> modifications = {};  ///< of the flanks: `right` is wall U; zones are halves
 };
 

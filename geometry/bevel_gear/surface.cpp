@@ -44,21 +44,8 @@ BevelCurvature bevel_curvature(const BevelWall<double>& w, double beta, double p
 std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell, double height,
                                           const BevelInverse& start) {
   using D2 = Dual<double, 2>;
-  BevelWall<D2> dual;
-  dual.sigma = w.sigma;
-  auto& t = dual.trace;
-  t.R_0 = w.trace.R_0, t.sin_delta = w.trace.sin_delta, t.cos_delta = w.trace.cos_delta;
-  t.beta_ref = w.trace.beta_ref, t.r_0 = w.trace.r_0, t.e_h = w.trace.e_h, t.h = w.trace.h;
-  t.beta_end = w.trace.beta_end;
-  for (int k = 0; k < 2; ++k) t.lead[k] = w.trace.lead[k];
   const auto& c = w.cutter;
-  FingerProfile<D2>& k = dual.cutter;
-  k.sin_a = c.sin_a, k.cos_a = c.cos_a, k.alpha_n = c.alpha_n, k.kappa_v = c.kappa_v, k.r_0 = c.r_0, k.h_f = c.h_f;
-  k.r_t = c.r_t, k.p_C = c.p_C, k.p_B = c.p_B, k.p_A = c.p_A, k.p_D = c.p_D, k.phi = c.phi, k.sin_phi = c.sin_phi;
-  k.cos_phi = c.cos_phi, k.x_C = c.x_C, k.rho_C = c.rho_C, k.x_B = c.x_B, k.rho_B = c.rho_B, k.x_o = c.x_o;
-  k.rho_o = c.rho_o, k.x_D = c.x_D, k.rho_D = c.rho_D, k.law = c.law, k.plain_p_C = c.plain_p_C;
-  k.plain_x_C = c.plain_x_C, k.plain_rho_C = c.plain_rho_C, k.plain_sin_phi = c.plain_sin_phi;
-  k.plain_cos_phi = c.plain_cos_phi;
+  const BevelWall<D2> dual = wall_over<D2>(w);
 
   const double scale = w.trace.R_0, half_pi = std::asin(1.0);
   // Steps are cut back: beta stays inside the trace, p inside the profile (a little beyond D on the involute).

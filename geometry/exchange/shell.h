@@ -1,5 +1,5 @@
 // The skin of a whole gear as its exact surfaces give it, before any of it is approximated: rings of teeth, and the
-// surfaces of revolution between them. Made by face_shell.h and bevel_shell.h.
+// surfaces of revolution between them. Made by tooth_shell.h.
 //
 // Around the gear the skin is a torus with two parameters: u runs along a meridian (over the first ring from its inner
 // to its outer end, over a groove and the next ring, down the outside, back along the underside, up the inside), v

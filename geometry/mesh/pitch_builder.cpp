@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "geometry/base/angle.h"
 
@@ -11,6 +12,8 @@ namespace {
 constexpr double kSame_mm = 1e-9;      ///< vertices of one row that are closer are one vertex
 constexpr double kMargin = 1.15;       ///< on the measured sag
 constexpr double kFootModules = 0.25;  ///< how far below the root an end face ends and the body begins
+constexpr double kLeastFoot = 1e-3;    ///< of the mean step of a row: between the feet of an end face
+constexpr double kClear = 1.01;        ///< of the turn that leads a line of an end face out of the space
 constexpr double kTurnShare = 0.25;    ///< of the tolerance: sag of a facet by the turn between two rows of the body
 
 using Index = std::int32_t;
@@ -81,7 +84,8 @@ PitchBuilder::Row PitchBuilder::row_at(const Row& profile, const Vec2& corner, c
     const Vec3& p = at(profile, j);
     const double own = radius(p), scale = std::abs(own - r) <= kSame_mm ? 1 : r / own;
     const Vec3 placed(scale * p.x(), scale * p.y(), z);
-    points.push_back(turns.empty() ? placed : turned(placed, turns[j]));
+    const double foot = profile.feet.empty() ? 0 : profile.feet[j];
+    points.push_back(turns.empty() && foot == 0 ? placed : turned(placed, (turns.empty() ? 0 : turns[j]) + foot));
   }
   const bool below = std::abs(corner.x() - s_of(profile)) <= kSame_mm;
   return add_row(std::move(points), below ? &profile : nullptr, corner.y());
@@ -197,11 +201,44 @@ void PitchBuilder::add_plain_strip(const Row& from, const Row& to, Piece patch, 
   }
 }
 
-Status PitchBuilder::check_no_overhang(const Row& row) const {
-  for (std::size_t j = 0; j + 1 < row.index.size(); ++j)
-    if (row.index[j] != row.index[j + 1] && !(angle_from_to(at(row, j), at(row, j + 1)) > 0))
-      return fail("the flank overhangs at the end of the teeth, radius {:.4f} mm, height {:.4f} mm", radius(at(row, j)),
-                  h_of(row, j));
+/// Where a flank overhangs at the end of the teeth, the lines of the end face from the row down to what is turned below
+/// it would cross the space: they are led away from it, from the root to both sides, no farther than each needs.
+/// @param lowest  h of what is turned
+Status PitchBuilder::stand(Row& end, double lowest) const {
+  const std::size_t n = end.index.size();
+  std::vector<double> azimuth{0}, h;
+  bool overhangs = false;
+  for (std::size_t j = 0; j < n; ++j) {
+    h.push_back(h_of(end, j));
+    if (j == 0) continue;
+    const double step = angle_from_to(at(end, j - 1), at(end, j));
+    azimuth.push_back(azimuth.back() + step);
+    overhangs = overhangs || (end.index[j - 1] != end.index[j] && !(step > 0));
+  }
+  if (!overhangs) return Ok{};
+  const auto root = std::size_t(std::min_element(h.begin(), h.end()) - h.begin());
+  end.feet.assign(n, 0);
+  const double gap = kLeastFoot * azimuth.back() / double(n);
+  for (const int side : {1, -1}) {  // towards the plus flank azimuths fall, towards the minus flank they grow
+    double last = azimuth[root];
+    const std::size_t count = side > 0 ? root : n - 1 - root;
+    for (std::size_t k = 1; k <= count; ++k) {
+      const std::size_t j = side > 0 ? root - k : root + k;
+      double foot = side * azimuth[j];
+      for (std::size_t i = 1; i < k; ++i) {
+        const std::size_t below = side > 0 ? root - i : root + i;
+        const double over = side * (azimuth[j] - azimuth[below]), fall = h[j] - h[below];
+        if (over > 0 && fall > 0) foot = std::min(foot, side * azimuth[j] - kClear * over * (h[j] - lowest) / fall);
+      }
+      if (end.index[j] != end.index[side > 0 ? j + 1 : j - 1]) foot = std::min(foot, side * last - gap);
+      else foot = side * last;
+      end.feet[j] = side * foot - azimuth[j];
+      last = side * foot;
+    }
+    if (end.feet[side > 0 ? 0 : n - 1] != 0)
+      return fail("the flank overhangs too far at the end of the teeth, radius {:.4f} mm: the tooth has no foot there",
+                  radius(at(end, root)));
+  }
   return Ok{};
 }
 
@@ -231,7 +268,8 @@ std::vector<PitchBuilder::Row> PitchBuilder::turned_rows(const Row& from, const 
   std::vector<double> turns(from.index.size());
   double most = 0;
   for (std::size_t j = 0; j < turns.size(); ++j) {
-    turns[j] = first + wrapped(angle_from_to(at(from, j), at(profile, j)) - first);
+    const double foot = profile.feet.empty() ? 0 : profile.feet[j];
+    turns[j] = first + wrapped(angle_from_to(at(from, j), at(profile, j)) + foot - first);
     most = std::max(most, std::abs(turns[j]));
   }
   const Vec2 &a = corners[0], &b = corners[1];
@@ -293,8 +331,16 @@ Status PitchBuilder::build() {
     auto rows = add_ring(k, grid_.stations[k]);
     if (!rows) return rows.error();
     rings_.push_back(std::move(*rows));
-    for (const Row* end : {&rings_.back().rows.front(), &rings_.back().rows.back()})
-      if (const auto fine = check_no_overhang(*end); !fine) return fine;
+    const double module = kFootModules * gear_.module_mm;
+    const auto& before = gear_.corners[k == 0 ? gear_.rings.size() - 1 : k - 1];
+    const auto& after = gear_.corners[k];
+    auto& own = rings_.back().rows;
+    for (auto [end, corner, body] : {std::tuple(&own.front(), before.back().y(), k == 0),
+                                     {&own.back(), after.front().y(), k + 1 == gear_.rings.size()}}) {
+      double root = INFINITY;
+      for (std::size_t j = 0; j < end->index.size(); ++j) root = std::min(root, h_of(*end, j));
+      if (const auto s = stand(*end, body ? std::max(corner, root - module) : corner); !s) return s;
+    }
   }
   for (std::size_t k = 0; k < rings_.size(); ++k) {
     for (std::size_t i = 0; i < rings_[k].falling.size(); ++i) add_surface_strip(rings_[k], i, std::uint8_t(k));

@@ -32,7 +32,8 @@ class PitchBuilder {
   /// A row of vertices across the pitch, at one station.
   struct Row {
     std::vector<std::int32_t> index;
-    std::vector<Vec2> uv;  ///< by slot; empty for the rows below the teeth
+    std::vector<Vec2> uv;      ///< by slot; empty for the rows below the teeth
+    std::vector<double> feet;  ///< what is turned below the row stands at its azimuths turned by this; empty: at these
   };
   /// The toothed surface of one ring: its rows and the way each cell is cut in two.
   struct RingRows {
@@ -53,7 +54,7 @@ class PitchBuilder {
   void add_triangle(std::int32_t a, std::int32_t b, std::int32_t c, const TriangleTag& tag);
   void add_surface_strip(const RingRows& ring, std::size_t strip, std::uint8_t zone);
   void add_plain_strip(const Row& from, const Row& to, Piece patch, std::uint8_t zone);
-  Status check_no_overhang(const Row& row) const;
+  Status stand(Row& end, double lowest) const;
   double distance_near(const RingRows& ring, std::size_t strip, std::size_t column, const Vec3& p, double enough) const;
   const Vec3& at(const Row& row, std::size_t j) const { return out_.mesh.vertices[std::size_t(row.index[j])]; }
   double h_of(const Row& row, std::size_t j) const { return chart_.up(at(row, j)); }

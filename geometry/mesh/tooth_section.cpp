@@ -27,7 +27,7 @@ struct Solved {
 
 /// The place of a piece at this u and station s, from a start and a slope ds/dv there. Nothing where it is not found.
 std::optional<Solved> at_station(const ToothSpace& space, Piece piece, double u, double s, double start, double slope) {
-  constexpr int kMostSteps = 40;
+  constexpr int kMostSteps = 40, kMostHalves = 5;  // a step may leave what the piece is defined on
   const auto& chart = space.outline().chart;
   const double longest = space.longest_step(piece, s);
   const auto first = space.point(piece, u, start);
@@ -37,9 +37,10 @@ std::optional<Solved> at_station(const ToothSpace& space, Piece piece, double u,
   double lack = s - chart.along(best.p);
   for (int k = 0; k < kMostSteps; ++k) {
     if (std::abs(lack) <= enough) return best;
-    const double step = std::clamp(lack / slope, -longest, longest);
+    double step = std::clamp(lack / slope, -longest, longest);
     if (!std::isfinite(step)) return {};
-    const auto next = space.point(piece, u, best.v + step);
+    auto next = space.point(piece, u, best.v + step);
+    for (int half = 0; half < kMostHalves && !next; ++half) next = space.point(piece, u, best.v + (step *= 0.5));
     if (!next) return {};
     const double left = s - chart.along(next->p);
     // Rounding: nothing nearer is found.

@@ -8,6 +8,9 @@
 //   Vec2 about_tip(int side, double s) const;          (u, v) near the tip edge: where Newton begins
 //   double v_at(Piece, double u, double s) const;      v near s
 //   Vec2 longest_step(Piece) const;                    of u and v in a search
+// and, where a piece is made of formulas that meet with another bend,
+//   auto branches(Piece, const Interval& u, const Interval& v) const;   those that hold somewhere in a box
+//   template <class S> bool place(Piece, branch, u, v, p, n) const;     by one of them
 #pragma once
 
 #include <Eigen/LU>
@@ -75,24 +78,11 @@ class KernelSpace final : public ToothSpace {
   }
   [[nodiscard]] std::optional<EdgePlace> tip_edge(int side, double s,
                                                   const std::optional<EdgePlace>& near = {}) const override {
-    constexpr int kSteps = 30;
-    Vec2 x = near ? Vec2(near->u, near->v) : kernel_.about_tip(side, s);
-    for (int k = 0; k < kSteps; ++k) {
-      const auto q = at(flank_of(side), x[0], x[1]);
-      if (!q) return {};
-      const Chart& c = outline_.chart;
-      const double lack_s = s - c.along(q->p), lack_h = tip(s) - c.up(q->p);
-      if (std::abs(lack_s) + std::abs(lack_h) < 1e-12 * q->p.norm()) {
-        // Of the flank's own tooth: the minus flank of the space belongs to the next one.
-        const double own = azimuth(turned(q->p, side > 0 ? 0.0 : -outline_.pitch));
-        return EdgePlace{x[0], x[1], near ? near->azimuth + std::remainder(own - near->azimuth, kTwoPi) : own};
-      }
-      const double su = c.along(q->p, q->pu), sv = c.along(q->p, q->pv), hu = c.up(q->p, q->pu), hv = c.up(q->p, q->pv),
-                   det = su * hv - sv * hu;
-      if (det == 0) return {};
-      x += Vec2(lack_s * hv - sv * lack_h, su * lack_h - lack_s * hu) / det;
-    }
-    return {};
+    std::optional<EdgePlace> found;
+    if (near) found = edge_from(side, s, Vec2(near->u, near->v));
+    if (!found) found = edge_from(side, s, kernel_.about_tip(side, s));
+    if (found && near) found->azimuth = near->azimuth + std::remainder(found->azimuth - near->azimuth, kTwoPi);
+    return found;
   }
   [[nodiscard]] std::optional<double> start_v(Piece piece, double u, double s, double, const std::optional<Near>& near,
                                               int attempt) const override {
@@ -106,13 +96,53 @@ class KernelSpace final : public ToothSpace {
                                              double half_b) const override {
     const BoxParameters box(frame, half_a, half_b);
     Vec3T<BoxSecond> p, n;
-    if (!kernel_.template place<BoxSecond>(piece, box.u, box.v, p, n)) return {};
-    Jet jet;
-    jet.add(p);
-    return jet;
+    if constexpr (requires { kernel_.branches(piece, box.u.v.v, box.v.v.v); }) {
+      std::optional<Jet> all;
+      for (const auto& branch : kernel_.branches(piece, box.u.v.v, box.v.v.v)) {
+        if (!kernel_.template place<BoxSecond>(piece, branch, box.u, box.v, p, n)) return {};
+        Jet jet;
+        jet.add(p);
+        all = all ? hull_of(*all, jet) : jet;
+      }
+      return all;
+    } else {
+      if (!kernel_.template place<BoxSecond>(piece, box.u, box.v, p, n)) return {};
+      Jet jet;
+      jet.add(p);
+      return jet;
+    }
   }
 
  private:
+  /// By Newton from (u, v); the azimuth is not unwrapped.
+  [[nodiscard]] std::optional<EdgePlace> edge_from(int side, double s, Vec2 x) const {
+    constexpr int kSteps = 30;
+    for (int k = 0; k < kSteps; ++k) {
+      const auto q = at(flank_of(side), x[0], x[1]);
+      if (!q) return {};
+      const Chart& c = outline_.chart;
+      const double lack_s = s - c.along(q->p), lack_h = tip(s) - c.up(q->p);
+      if (std::abs(lack_s) + std::abs(lack_h) < 1e-12 * q->p.norm()) {
+        // Of the flank's own tooth: the minus flank of the space belongs to the next one.
+        const double own = azimuth(turned(q->p, side > 0 ? 0.0 : -outline_.pitch));
+        return EdgePlace{x[0], x[1], own};
+      }
+      const double su = c.along(q->p, q->pu), sv = c.along(q->p, q->pv), hu = c.up(q->p, q->pu), hv = c.up(q->p, q->pv),
+                   det = su * hv - sv * hu;
+      if (det == 0) return {};
+      x += Vec2(lack_s * hv - sv * lack_h, su * lack_h - lack_s * hu) / det;
+    }
+    return {};
+  }
+  static Jet hull_of(Jet a, const Jet& b) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      a.place[k] = hull(a.place[k], b.place[k]);
+      for (std::size_t n = 0; n < 2; ++n) a.first[n][k] = hull(a.first[n][k], b.first[n][k]);
+      for (std::size_t n = 0; n < 3; ++n) a.second[n][k] = hull(a.second[n][k], b.second[n][k]);
+    }
+    return a;
+  }
+
   Kernel kernel_;
   Outline outline_;
 };

@@ -1,6 +1,7 @@
 #include "geometry/tooth_space/tooth_space.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace toothpath::tooth_space {
 
@@ -18,8 +19,10 @@ std::optional<CurveBend> ToothSpace::tip_azimuth(int side, const EdgePlace& from
   const CurveBend tip = tip_bend(s_from, s_to);
   const Vec2 a(from.u, from.v), b(to.u, to.v), way = (b - a).cwiseAbs();
   const PatchFrame frame{0.5 * (a + b), Vec2::UnitX(), Vec2::UnitY()};
-  for (const double slack : {1e-6, 1e-4, 1e-2}) {
-    const double du = 2 * way.x() + slack, dv = 2 * way.y() + slack;
+  // Where the edge hardly moves in u, the spread of its slope comes from the length of the box in v alone.
+  for (const auto& [of_u, of_v] :
+       {std::pair(1e-6, 1e-6), {1e-4, 1e-4}, {1e-2, 1e-2}, {1e-4, 0.0}, {1e-2, 0.0}}) {
+    const double du = 2 * way.x() + of_u, dv = 2 * way.y() + of_v;
     const auto jet = enclosure(flank_of(side), frame, 0.5 * way.x() + du, 0.5 * way.y() + dv);
     if (!jet) continue;
     // The edge is h = tip(s): with s for its parameter, two linear equations for (u', v') and again for (u'', v'').

@@ -3,37 +3,15 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "app/process/gear_files.h"
-#include "app/report/deviation_vtp.h"
 #include "cam/finger/bodies.h"
 #include "cam/finger/milling.h"
 #include "cam/finger/obstacles.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/json_text.h"
 #include "geometry/inspection/bevel_grid.h"
-#include "geometry/mesh/bevel_mesh.h"
 
 namespace toothpath::bevel {
 namespace {
-
-Result<std::string> gear_text(const bevel_gear::BevelGear& gear, const std::string& job_name) {
-  const auto mesh = mesh::bevel_gear_mesh(gear);
-  if (!mesh) return mesh.error();
-  return process::stl_text(*mesh, job_name);
-}
-
-Result<std::string> pitch_text(const bevel_gear::BevelGear& gear) {
-  std::vector<double> patches;
-  const auto mesh = mesh::bevel_pitch_mesh(gear, patches);
-  if (!mesh) return mesh.error();
-  return process::vtp_text(*mesh, patches);
-}
-
-Result<std::string> inspection_text(const bevel_gear::BevelGear& gear) {
-  const auto points = inspection::bevel_inspection_grid(gear);
-  if (!points) return points.error();
-  return inspection_csv(*points, inspection::kWallNames);
-}
 
 std::string gear_words(const bevel_gear::BevelGearParameters& p) {
   return fmt::format("bevel gear, z {}, {}outer transverse module {:g} mm", p.teeth,
@@ -104,17 +82,10 @@ std::string limits_json(const bevel_gear::BevelGear& g) {
   return json_text(j, 2) + "\n";
 }
 
-Status write_surface_files(app::OutputDir& output, const bevel_gear::BevelGear& gear, const std::string& job_name,
-                           const std::vector<proof::SurfaceGrid>& walls, app::StageClock& clock,
-                           std::vector<std::string>& files) {
-  process::GearFiles to(output, files);
-  if (const auto s = to.write("limits.json", limits_json(gear)); !s) return s;
-  if (const auto s = to.write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); }));
-      !s)
-    return s;
-  if (const auto s = to.write("gear.stl", clock.run("mesh", [&] { return gear_text(gear, job_name); })); !s) return s;
-  return to.write("tooth.vtp",
-                  clock.run("mesh", [&] { return walls.empty() ? pitch_text(gear) : report::deviation_vtp(walls); }));
+Result<std::string> inspection_text(const bevel_gear::BevelGear& gear) {
+  const auto points = inspection::bevel_inspection_grid(gear);
+  if (!points) return points.error();
+  return inspection_csv(*points, inspection::kWallNames);
 }
 
 }  // namespace toothpath::bevel

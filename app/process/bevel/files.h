@@ -1,14 +1,11 @@
-// The files that describe a finished bevel gear: limits, inspection points and meshes; and its outline for posts and
-// sheets.
+// What describes a bevel gear in files and to posts and sheets: limits, inspection points, its outline.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "app/base/output_dir.h"
-#include "app/base/stage_clock.h"
 #include "app/report/sheet/setup_sheet.h"
-#include "cam/proof/verification.h"
+#include "cam/tool/assembly.h"
 #include "geometry/bevel_gear/gear.h"
 #include "postproc/joints/program.h"
 
@@ -29,10 +26,7 @@ namespace toothpath::bevel {
 /// more.
 [[nodiscard]] std::string limits_json(const bevel_gear::BevelGear& gear);
 
-/// Writes limits.json, inspection.csv, gear.stl (all teeth) and tooth.vtp (with `walls`: the measured walls and their
-/// deviation in um; without: one pitch with the number of the patch) and appends their names to `files`.
-[[nodiscard]] Status write_surface_files(app::OutputDir& output, const bevel_gear::BevelGear& gear,
-                                         const std::string& job_name, const std::vector<proof::SurfaceGrid>& walls,
-                                         app::StageClock& clock, std::vector<std::string>& files);
+/// inspection.csv, its flanks called L and U.
+[[nodiscard]] Result<std::string> inspection_text(const bevel_gear::BevelGear& gear);
 
 }  // namespace toothpath::bevel

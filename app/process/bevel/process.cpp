@@ -8,6 +8,7 @@
 #include "app/process/bevel/files.h"
 #include "app/process/bevel/ledger.h"
 #include "app/process/bevel/proof.h"
+#include "app/process/milled/toothed_process.h"
 #include "app/report/page/tool_body.h"
 #include "cam/finger/bodies.h"
 #include "cam/finger/check.h"
@@ -15,14 +16,11 @@
 #include "cam/path/motions.h"
 #include "cam/rest/swept_body.h"
 #include "geometry/base/angle.h"
-#include "geometry/exchange/bevel_shell.h"
-#include "geometry/mesh/bevel_mesh.h"
+#include "geometry/bevel_gear/part.h"
 
 namespace toothpath::bevel {
 namespace {
 
-constexpr double kRootRounding = 1e-9;  // mm
-constexpr mesh::BevelMeshOptions kPictureFacets{.stations = 7, .rows = 5, .root_points = 2, .land_points = 1};
 constexpr double kAboveTip_mm = 2, kBesideMill_mm = 4;  // where distances from a swept mill are asked most
 constexpr double kRootShare = 1;  // the flat tip of the mill faces the root: a length error reaches it in full
 
@@ -33,9 +31,10 @@ finger::FingerCheckOptions check_options(const process::FlankGrid& grid) {
   return options;
 }
 
-class BevelMilling final : public process::GearMilling {
+/// By finger mills.
+class FingerMilling final : public process::GearMilling {
  public:
-  BevelMilling(const job::Job& job, const machines::Machine& machine, const bevel_gear::BevelGear& gear,
+  FingerMilling(const job::Job& job, const machines::Machine& machine, const bevel_gear::BevelGear& gear,
                const proof::ProofLimits& limits, const process::FlankGrid& grid)
       : job_(job),
         gear_(gear),
@@ -105,129 +104,119 @@ class BevelMilling final : public process::GearMilling {
   std::vector<finger::FingerPlan> plans_;
 };
 
-class BevelProcess final : public process::GearProcess {
+/// The pair, and what files and pages say of any such gear.
+class BevelProcess : public milled::ToothedProcess {
  public:
-  BevelProcess(const job::Job& job, bevel_gear::BevelGear gear) : job_(job), gear_(std::move(gear)) {
-    const auto& p = gear_.parameters();
-    part_ = {p.teeth, 2 * (gear_.R_e() * gear_.sin_delta() + p.addendum_mm * gear_.cos_delta()),
-             2 * clearance_body(gear_).radius_mm, gear_.warnings()};
-    if (gear_.modified()) part_.modified = report::ModifiedFlanks{p.modifications, {}, gear_.modified()};
-  }
+  BevelProcess(const job::Job& job, std::shared_ptr<const bevel_gear::BevelPart> part)
+      : ToothedProcess(job, toothed(job, *part, part)), bevel_(part->gear()) {}
 
-  [[nodiscard]] const process::PartFacts& part() const override { return part_; }
-  [[nodiscard]] Result<process::Correction> correct(const job::MeasuredInput&, app::StageClock&) override {
-    return process::needs_face_gear(job_);
-  }
-  [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine& machine) const override {
-    return bevel::link_body(gear_, job_.tools, machine);
-  }
-  [[nodiscard]] sheet::PartOutline outline() const override { return bevel::outline(gear_); }
-  [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override {
-    const auto& p = gear_.parameters();
-    page::GearOnPage out;
-    out.subtitle =
-        fmt::format("equal-base-circle bevel gear z {}, outer module {:g} mm, {}, pitch angle {:.4f} deg, {}", p.teeth,
-                    p.outer_transverse_module_mm, gear_.herringbone() ? "herringbone" : "single hand",
-                    degrees(gear_.delta()), machine_name);
-    for (const auto& tool : job_.tools) out.tools.push_back(page::page_finger_mill(gear_, tool));
-    return out;
-  }
-  [[nodiscard]] std::vector<svg::LineChart> limit_charts() const override { return {}; }
-  [[nodiscard]] Result<process::SceneGear> scene(double clearance_mm) const override {
-    // W stands in the pitch apex.
-    process::SceneGear out{
-        part_.teeth, clearance_mm, {}, [gear = gear_](const Vec3& tip) { return azimuth_from_space_0(gear, tip); }};
-    out.bodies.resize(job_.tools.size());
-    for (const auto& operation : job_.operations) {
-      const auto k = std::size_t(operation.tool);
-      if (!out.bodies[k].empty()) continue;
-      const auto own = finger::gear_for_finger_mill(gear_, job_.tools[k]);
-      if (!own) return process::located(job_, fmt::format("tool[{}]", k), own.error());
-      out.bodies[k] = finger::finger_bodies(own->cutter(), job_.tools[k]);
-      for (std::size_t sister = 0; sister < job_.tools.size(); ++sister)
-        if (job_.tools[sister].sister_of == job_.tools[k].number) out.bodies[sister] = out.bodies[k];
-    }
-    return out;
-  }
-  [[nodiscard]] Result<process::FinishedGear> solid() const override {
-    auto mesh = mesh::bevel_gear_mesh(gear_);
-    if (!mesh) return process::located(job_, "gear", mesh.error());
-    const auto above = [gear = gear_](const Vec3& p) {
-      return bevel_gear::cone_point(p, gear.sin_delta(), gear.cos_delta()).height >
-             -gear.parameters().dedendum_mm - kRootRounding;
-    };
-    process::FinishedGear out{std::move(*mesh), {}, above};
-    for (const Vec3& v : out.mesh.vertices) out.teeth.push_back(above(v));
-    return out;
-  }
-  [[nodiscard]] Result<mesh::TriangleMesh> mesh() const override { return mesh::bevel_gear_mesh(gear_); }
-  [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh(process::FacetSize size) const override {
-    auto pitch =
-        mesh::bevel_pitch_part(gear_, size == process::FacetSize::picture ? kPictureFacets : mesh::BevelMeshOptions());
-    if (!pitch) return process::located(job_, "gear", pitch.error());
-    return pitch;
-  }
-  [[nodiscard]] rest::Blank blank() const override {
-    rest::Blank out;
-    out.teeth = part_.teeth;
-    out.outward = -1;
-    const auto& p = gear_.parameters();
-    const auto& halves = gear_.halves();
-    for (std::size_t k = 0; k < halves.size(); ++k) {
-      const bool last = k + 1 == halves.size();
-      out.rings.push_back({halves[k].ell_from, last ? gear_.R_e() : halves[k].ell_to,
-                           [top = p.addendum_mm](double) { return top; }, [](double) { return 0.0; }, -p.dedendum_mm});
-      if (!last) out.corners.push_back({{halves[k].ell_to, -p.dedendum_mm}, {halves[k + 1].ell_from, -p.dedendum_mm}});
-    }
-    const double under = mesh::underside_height(gear_);
-    out.corners.push_back({{gear_.R_e(), under}, {gear_.R_i(), under}});
-    out.place = [sd = gear_.sin_delta(), cd = gear_.cos_delta()](double ell, double height, double azimuth) {
-      return bevel_gear::blank_point(ell, height, azimuth, sd, cd);
-    };
-    return out;
-  }
-  [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::bevel_gear_shell(gear_); }
-  [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
-                                   const std::vector<std::string>&, app::StageClock& clock,
-                                   std::vector<std::string>& files) const override {
-    return write_surface_files(output, gear_, job_.name, surface, clock, files);
-  }
-  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine,
-                                                              const proof::ProofLimits& limits,
-                                                              const process::FlankGrid& grid,
-                                                              app::StageClock&) const override {
-    return std::make_unique<BevelMilling>(job_, machine, gear_, limits, grid);
-  }
-  [[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped(const process::FlankGrid&) const override {
-    return std::vector{process::needs_face_gear(job_)};
-  }
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
     if (asked.pinion_teeth.has_value())
-      return fail_at(job_.where("gear.type"), "type = \"{}\", but --pinion-teeth needs a face_gear", job_.gear_type());
+      return fail_at(job().where("gear.type"), "type = \"{}\", but --pinion-teeth needs a face_gear",
+                     job().gear_type());
     return Ok{};
   }
   [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,
                                                                       const process::CutFlanks* cut,
                                                                       app::StageClock& clock) const override {
-    return roll_pair(job_, gear_, asked, cut, clock);
-  }
-  [[nodiscard]] std::string contact_section(const std::vector<proof::SurfaceGrid>&,
-                                            std::vector<std::string>&) const override {
-    return {};
+    return roll_pair(job(), bevel_, asked, cut, clock);
   }
 
+ protected:
+  [[nodiscard]] Result<std::string> inspection_text() const override { return bevel::inspection_text(bevel_); }
+  [[nodiscard]] const bevel_gear::BevelGear& bevel() const { return bevel_; }
+
  private:
-  const job::Job& job_;
-  bevel_gear::BevelGear gear_;
-  process::PartFacts part_;
+  static milled::ToothedGear toothed(const job::Job& job, const bevel_gear::BevelPart& part,
+                                     std::shared_ptr<const bevel_gear::BevelPart> owner) {
+    const bevel_gear::BevelGear& gear = part.gear();
+    const auto& p = gear.parameters();
+    milled::ToothedGear out;
+    out.part = owner;
+    out.solid = drawn_solid(part);
+    out.owner = std::move(owner);
+    const joints::ClearanceBody links = clearance_body(gear);
+    out.facts = {p.teeth, 2 * (gear.R_e() * gear.sin_delta() + p.addendum_mm * gear.cos_delta()), 2 * links.radius_mm,
+                 gear.warnings()};
+    if (gear.modified()) out.facts.modified = report::ModifiedFlanks{p.modifications, {}, gear.modified()};
+    const auto defines = [](const tool::ToolAssembly& t) { return tool::serves(t, tool::CutterUse::tooth_form); };
+    if (!p.mill && std::none_of(job.tools.begin(), job.tools.end(), defines))
+      out.facts.warnings.push_back(fmt::format(
+          "the flanks are those that a finger mill by the rules leaves (module {:g}, tip radius {:g}, rack depth {:g}, "
+          "profile height {:g} mm); [gear.mill] states another one",
+          gear.cutter_data().module_mm, gear.cutter_data().tip_radius_mm, gear.cutter_data().rack_depth_mm,
+          gear.cutter_data().profile_height_mm));
+    out.body = {links, {links.radius_mm, 0, links.z_max_mm, links.z_min_mm, proof::Roof(part)}};
+    out.outline = bevel::outline(gear);
+    out.subtitle = fmt::format("equal-base-circle bevel gear z {}, outer module {:g} mm, {}, pitch angle {:.4f} deg",
+                               p.teeth, p.outer_transverse_module_mm, gear.herringbone() ? "herringbone" : "single hand",
+                               degrees(gear.delta()));
+    out.limits_json = [&gear] { return bevel::limits_json(gear); };  // the gear lives as long as the part
+    return out;
+  }
+
+  const bevel_gear::BevelGear& bevel_;
 };
+
+/// By the mill whose envelope the flanks are.
+class FingerProcess final : public BevelProcess {
+ public:
+  using BevelProcess::BevelProcess;
+
+  [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine& machine) const override {
+    return bevel::link_body(bevel(), job().tools, machine);
+  }
+  [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override {
+    page::GearOnPage out = BevelProcess::on_page(machine_name);
+    out.tools.clear();
+    for (const auto& tool : job().tools) out.tools.push_back(page::page_finger_mill(bevel(), tool));
+    return out;
+  }
+  [[nodiscard]] Result<process::SceneGear> scene(double clearance_mm) const override {
+    // W stands in the pitch apex.
+    process::SceneGear out{
+        gear().facts.teeth, clearance_mm, {}, [gear = bevel()](const Vec3& tip) { return azimuth_from_space_0(gear, tip); }};
+    out.bodies.resize(job().tools.size());
+    for (const auto& operation : job().operations) {
+      const auto k = std::size_t(operation.tool);
+      if (!out.bodies[k].empty()) continue;
+      const auto own = finger::gear_for_finger_mill(bevel(), job().tools[k]);
+      if (!own) return process::located(job(), fmt::format("tool[{}]", k), own.error());
+      out.bodies[k] = finger::finger_bodies(own->cutter(), job().tools[k]);
+      for (std::size_t sister = 0; sister < job().tools.size(); ++sister)
+        if (job().tools[sister].sister_of == job().tools[k].number) out.bodies[sister] = out.bodies[k];
+    }
+    return out;
+  }
+  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine,
+                                                              const proof::ProofLimits& limits,
+                                                              const process::FlankGrid& grid,
+                                                              app::StageClock&) const override {
+    return std::make_unique<FingerMilling>(job(), machine, bevel(), limits, grid);
+  }
+};
+
+/// Does anything cut this gear that is not its own mill?
+bool ball_milled(const job::Job& job) {
+  return std::any_of(job.operations.begin(), job.operations.end(), [](const path::MillingOperation& o) {
+    return o.type != path::OperationType::finger_roughing && o.type != path::OperationType::finger_finishing;
+  });
+}
 
 }  // namespace
 
 process::ValueOrErrors<std::unique_ptr<process::GearProcess>> make_process(const job::Job& job) {
   auto made = process::make_bevel_gear(job);
   if (auto* errors = made.refused()) return std::move(*errors);
-  return std::unique_ptr<process::GearProcess>(std::make_unique<BevelProcess>(job, std::move(made).value()));
+  auto part = std::make_shared<const bevel_gear::BevelPart>(std::move(made).value());
+  if (!ball_milled(job))
+    return std::unique_ptr<process::GearProcess>(std::make_unique<FingerProcess>(job, std::move(part)));
+  if (part->gear().parameters().shaft_diameter_mm > 0)
+    return std::vector{fail_at(job.where("gear.shaft_diameter"),
+                               "shaft_diameter = {:g} mm: ball mills do not look at a shaft before the small end; leave "
+                               "it out and hold it as a [[body]] of the machine, or cut with the finger mill",
+                               part->gear().parameters().shaft_diameter_mm)};
+  return std::unique_ptr<process::GearProcess>(std::make_unique<BevelProcess>(job, std::move(part)));
 }
 
 }  // namespace toothpath::bevel

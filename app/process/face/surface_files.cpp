@@ -23,7 +23,8 @@ Status write_surface_files(app::OutputDir& output, const face_gear::FaceGear& ge
   const auto dmis = inspection::inspection_grid(drawn_solid(gear));
   if (!dmis) return dmis.error();
   if (const auto s = to.write("inspection.dmi", inspection::inspection_dmis(gear, *dmis, job_name)); !s) return s;
-  return milled::write_bodies(to, drawn_solid(gear), job_name, surface, clock);
+  return milled::write_bodies(
+      to, drawn_solid(gear), job_name, [&] { return milled::inspection_text(drawn_solid(gear)); }, surface, clock);
 }
 
 }  // namespace toothpath::face

@@ -24,13 +24,13 @@ Result<std::string> pitch_text(const ToothedSolid& gear) {
   return process::vtp_text(pitch->mesh, patch_of_vertices(*pitch));
 }
 
+}  // namespace
+
 Result<std::string> inspection_text(const ToothedSolid& gear) {
   const auto points = inspection::inspection_grid(gear);
   if (!points) return points.error();
   return inspection_csv(*points);
 }
-
-}  // namespace
 
 Result<process::FinishedGear> finished_gear(const ToothedSolid& gear) {
   const auto pitch = mesh::mesh_tooth_space(gear, kSolidSag);
@@ -60,10 +60,9 @@ Result<mesh::TriangleMesh> pitch_mesh(const ToothedSolid& gear, process::FacetSi
 }
 
 Status write_bodies(process::GearFiles& to, const ToothedSolid& gear, const std::string& job_name,
+                    const std::function<Result<std::string>()>& inspection,
                     const std::vector<proof::SurfaceGrid>& surface, app::StageClock& clock) {
-  if (const auto s = to.write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); }));
-      !s)
-    return s;
+  if (const auto s = to.write("inspection.csv", clock.run("inspection grid", inspection)); !s) return s;
   if (const auto s = to.write("gear.stl", clock.run("mesh", [&] { return gear_text(gear, job_name); })); !s) return s;
   return to.write("tooth.vtp", clock.run("mesh", [&] {
     return surface.empty() ? pitch_text(gear) : report::deviation_vtp(surface);

@@ -18,101 +18,84 @@
 namespace toothpath::milled {
 namespace {
 
-class ToothedProcess final : public process::GearProcess {
- public:
-  ToothedProcess(const job::Job& job, ToothedGear gear) : job_(job), gear_(std::move(gear)) {}
+/// Of the root's middle in the zone next to a place.
+double azimuth_of_space(const tooth_space::ToothedPart& part, const Vec3& p) {
+  const double s = part.chart().along(p);
+  const int zone = tooth_space::zone_next_to(part, s);
+  const tooth_space::Outline& ring = part.space(zone).outline();
+  const auto root =
+      tooth_space::place_at(part.space(zone), tooth_space::Piece::root, 0.5, std::clamp(s, ring.s_from, ring.s_to));
+  return root ? azimuth(root->p) : 0;
+}
 
-  [[nodiscard]] const process::PartFacts& part() const override { return gear_.facts; }
-  [[nodiscard]] Result<process::Correction> correct(const job::MeasuredInput&, app::StageClock&) override {
-    return process::needs_face_gear(job_);
-  }
-  [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine&) const override { return gear_.body.links; }
-  [[nodiscard]] sheet::PartOutline outline() const override { return gear_.outline; }
-  [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override {
-    page::GearOnPage out;
-    out.subtitle = gear_.subtitle + ", " + machine_name;
-    for (const auto& tool : job_.tools) out.tools.push_back(page::page_end_mill(tool));
-    return out;
-  }
-  [[nodiscard]] std::vector<svg::LineChart> limit_charts() const override { return gear_.limit_charts; }
-  [[nodiscard]] Result<process::SceneGear> scene(double clearance_mm) const override {
-    process::SceneGear out{gear_.facts.teeth, clearance_mm, {}, [part = gear_.part](const Vec3& tip) {
-                             return azimuth(tip) - azimuth_of_space(*part, tip);
-                           }};
-    for (const auto& tool : job_.tools) out.bodies.push_back(clearance::mesh_bodies(tool));
-    return out;
-  }
-  [[nodiscard]] Result<process::FinishedGear> solid() const override {
-    auto made = finished_gear(gear_.solid);
-    if (!made) return process::located(job_, "gear", made.error());
-    return made;
-  }
-  [[nodiscard]] Result<mesh::TriangleMesh> mesh() const override { return gear_mesh(gear_.solid); }
-  [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh(process::FacetSize size) const override {
-    auto pitch = milled::pitch_mesh(gear_.solid, size);
-    if (!pitch) return process::located(job_, "gear", pitch.error());
-    return pitch;
-  }
-  [[nodiscard]] rest::Blank blank() const override { return rest::blank_of(gear_.solid); }
-  [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::tooth_shell(gear_.solid); }
-  [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
-                                   const std::vector<std::string>&, app::StageClock& clock,
-                                   std::vector<std::string>& files) const override {
-    process::GearFiles to(output, files);
-    if (const auto s = to.write("limits.json", gear_.limits_json()); !s) return s;
-    const auto& charts = gear_.limit_charts;
-    for (std::size_t zone = 0; zone < charts.size(); ++zone)
-      if (const auto s = to.write(charts.size() == 1 ? "limits.svg" : fmt::format("limits_{}.svg", zone),
-                                  page::standalone_svg(charts[zone]));
-          !s)
-        return s;
-    return write_bodies(to, gear_.solid, job_.name, surface, clock);
-  }
-  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine,
-                                                              const proof::ProofLimits& limits,
-                                                              const process::FlankGrid& grid,
-                                                              app::StageClock& clock) const override {
-    return clock.run("distance index", [&] {
-      return std::make_unique<Milling>(job_, machine, analytic::GearDistance(gear_.part, ball::reach_of(job_.tools)),
-                                       gear_.body, limits, grid);
-    });
-  }
-  [[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped(const process::FlankGrid&) const override {
-    return std::vector{process::needs_face_gear(job_)};
-  }
-  [[nodiscard]] Status accepts(const process::ContactAsked&) const override { return no_contact(); }
-  [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked&,
-                                                                      const process::CutFlanks*,
-                                                                      app::StageClock&) const override {
-    return std::vector{no_contact()};
-  }
-  [[nodiscard]] std::string contact_section(const std::vector<proof::SurfaceGrid>&,
-                                            std::vector<std::string>&) const override {
-    return {};
-  }
-
- private:
-  /// Of the root's middle in the zone next to a place.
-  static double azimuth_of_space(const tooth_space::ToothedPart& part, const Vec3& p) {
-    const double s = part.chart().along(p);
-    const int zone = tooth_space::zone_next_to(part, s);
-    const tooth_space::Outline& ring = part.space(zone).outline();
-    const auto root =
-        tooth_space::place_at(part.space(zone), tooth_space::Piece::root, 0.5, std::clamp(s, ring.s_from, ring.s_to));
-    return root ? azimuth(root->p) : 0;
-  }
-  [[nodiscard]] Diagnostic no_contact() const {
-    return fail_at(
-        job_.where("gear.type"),
-        "type = \"{}\": contact is not there yet for it; it rolls face_gear and equal_base_circle_bevel_gear",
-        job_.gear_type());
-  }
-
-  const job::Job& job_;
-  ToothedGear gear_;
-};
+Diagnostic no_contact(const job::Job& job) {
+  return fail_at(job.where("gear.type"),
+                 "type = \"{}\": contact is not there yet for it; it rolls face_gear and equal_base_circle_bevel_gear",
+                 job.gear_type());
+}
 
 }  // namespace
+
+Result<process::Correction> ToothedProcess::correct(const job::MeasuredInput&, app::StageClock&) {
+  return process::needs_face_gear(job_);
+}
+page::GearOnPage ToothedProcess::on_page(const std::string& machine_name) const {
+  page::GearOnPage out;
+  out.subtitle = gear_.subtitle + ", " + machine_name;
+  for (const auto& tool : job_.tools) out.tools.push_back(page::page_end_mill(tool));
+  return out;
+}
+Result<process::SceneGear> ToothedProcess::scene(double clearance_mm) const {
+  process::SceneGear out{gear_.facts.teeth, clearance_mm, {}, [part = gear_.part](const Vec3& tip) {
+                           return azimuth(tip) - azimuth_of_space(*part, tip);
+                         }};
+  for (const auto& tool : job_.tools) out.bodies.push_back(clearance::mesh_bodies(tool));
+  return out;
+}
+Result<process::FinishedGear> ToothedProcess::solid() const {
+  auto made = finished_gear(gear_.solid);
+  if (!made) return process::located(job_, "gear", made.error());
+  return made;
+}
+Result<mesh::TriangleMesh> ToothedProcess::mesh() const { return gear_mesh(gear_.solid); }
+Result<mesh::TriangleMesh> ToothedProcess::pitch_mesh(process::FacetSize size) const {
+  auto pitch = milled::pitch_mesh(gear_.solid, size);
+  if (!pitch) return process::located(job_, "gear", pitch.error());
+  return pitch;
+}
+rest::Blank ToothedProcess::blank() const { return rest::blank_of(gear_.solid); }
+Result<exchange::GearShell> ToothedProcess::shell() const { return exchange::tooth_shell(gear_.solid); }
+Status ToothedProcess::write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
+                                   const std::vector<std::string>&, app::StageClock& clock,
+                                   std::vector<std::string>& files) const {
+  process::GearFiles to(output, files);
+  if (const auto s = to.write("limits.json", gear_.limits_json()); !s) return s;
+  const auto& charts = gear_.limit_charts;
+  for (std::size_t zone = 0; zone < charts.size(); ++zone)
+    if (const auto s = to.write(charts.size() == 1 ? "limits.svg" : fmt::format("limits_{}.svg", zone),
+                                page::standalone_svg(charts[zone]));
+        !s)
+      return s;
+  return write_bodies(to, gear_.solid, job_.name, [&] { return inspection_text(); }, surface, clock);
+}
+std::unique_ptr<process::GearMilling> ToothedProcess::milling(const machines::Machine& machine,
+                                                              const proof::ProofLimits& limits,
+                                                              const process::FlankGrid& grid,
+                                                              app::StageClock& clock) const {
+  return clock.run("distance index", [&] {
+    return std::make_unique<Milling>(job_, machine, analytic::GearDistance(gear_.part, ball::reach_of(job_.tools)),
+                                     gear_.body, limits, grid);
+  });
+}
+process::ValueOrErrors<process::CutFlanks> ToothedProcess::shaped(const process::FlankGrid&) const {
+  return std::vector{process::needs_face_gear(job_)};
+}
+Status ToothedProcess::accepts(const process::ContactAsked&) const { return no_contact(job_); }
+process::ValueOrErrors<process::ContactFound> ToothedProcess::contact(const process::ContactAsked&,
+                                                                      const process::CutFlanks*,
+                                                                      app::StageClock&) const {
+  return std::vector{no_contact(job_)};
+}
 
 std::unique_ptr<process::GearProcess> toothed_process(const job::Job& job, ToothedGear gear) {
   return std::make_unique<ToothedProcess>(job, std::move(gear));

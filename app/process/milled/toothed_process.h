@@ -5,9 +5,11 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/process/gear_process.h"
+#include "app/process/milled/bodies.h"
 #include "app/process/milled/body.h"
 #include "geometry/tooth_space/toothed_part.h"
 #include "geometry/tooth_space/toothed_solid.h"
@@ -25,6 +27,51 @@ struct ToothedGear {
   std::string subtitle;  ///< of the page, without the machine
   std::function<std::string()> limits_json;
   std::vector<svg::LineChart> limit_charts;  ///< one a zone
+};
+
+/// A gear type that has more to say derives from it. The job must outlive it.
+class ToothedProcess : public process::GearProcess {
+ public:
+  ToothedProcess(const job::Job& job, ToothedGear gear) : job_(job), gear_(std::move(gear)) {}
+
+  [[nodiscard]] const process::PartFacts& part() const override { return gear_.facts; }
+  [[nodiscard]] Result<process::Correction> correct(const job::MeasuredInput&, app::StageClock&) override;
+  [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine&) const override { return gear_.body.links; }
+  [[nodiscard]] sheet::PartOutline outline() const override { return gear_.outline; }
+  [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override;
+  [[nodiscard]] std::vector<svg::LineChart> limit_charts() const override { return gear_.limit_charts; }
+  [[nodiscard]] Result<process::SceneGear> scene(double clearance_mm) const override;
+  [[nodiscard]] Result<process::FinishedGear> solid() const override;
+  [[nodiscard]] Result<mesh::TriangleMesh> mesh() const override;
+  [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh(process::FacetSize size) const override;
+  [[nodiscard]] rest::Blank blank() const override;
+  [[nodiscard]] Result<exchange::GearShell> shell() const override;
+  [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
+                                   const std::vector<std::string>& assumed, app::StageClock& clock,
+                                   std::vector<std::string>& files) const override;
+  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine,
+                                                              const proof::ProofLimits& limits,
+                                                              const process::FlankGrid& grid,
+                                                              app::StageClock& clock) const override;
+  [[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped(const process::FlankGrid&) const override;
+  [[nodiscard]] Status accepts(const process::ContactAsked&) const override;
+  [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,
+                                                                      const process::CutFlanks*,
+                                                                      app::StageClock&) const override;
+  [[nodiscard]] std::string contact_section(const std::vector<proof::SurfaceGrid>&,
+                                            std::vector<std::string>&) const override {
+    return {};
+  }
+
+ protected:
+  /// inspection.csv.
+  [[nodiscard]] virtual Result<std::string> inspection_text() const { return milled::inspection_text(gear_.solid); }
+  [[nodiscard]] const job::Job& job() const { return job_; }
+  [[nodiscard]] const ToothedGear& gear() const { return gear_; }
+
+ private:
+  const job::Job& job_;
+  ToothedGear gear_;
 };
 
 /// The job must outlive it.

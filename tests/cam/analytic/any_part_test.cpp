@@ -12,6 +12,8 @@
 #include "geometry/base/angle.h"
 #include "geometry/cylindrical/part.h"
 #include "geometry/tooth_space/limits.h"
+#include "geometry/bevel_gear/part.h"
+#include "tests/geometry/bevel_gear/samples.h"
 #include "tests/geometry/cylindrical/samples.h"
 #include "tests/geometry/spiral_bevel/samples.h"
 #include "tests/geometry/straight_bevel/samples.h"
@@ -202,6 +204,45 @@ straight_bevel::StraightBevelParameters narrow_bevel(straight_bevel::Form form) 
   return g;
 }
 
+/// Profiles at stations along the face, taken straight between them.
+Solid solid_of(const std::shared_ptr<const bevel_gear::BevelPart>& part) {
+  constexpr int kStations = 81;
+  std::vector<std::vector<std::vector<Vec2>>> zones;  // zone, station: azimuth and height from tip to tip
+  for (int zone = 0; zone < part->zones(); ++zone) {
+    const auto& ring = part->space(zone).outline();
+    const tooth_space::OffsetSheet sheet(part->space(zone), 0, ring.s_from, ring.s_to, kStations);
+    auto& lines = zones.emplace_back();
+    for (const auto& station : sheet.stations())
+      for (auto& line = lines.emplace_back(); const auto& node : station.nodes)
+        line.emplace_back(node.azimuth, ring.chart.up(node.at.centre));
+  }
+  return {part, [part, zones](const Vec3& p) {
+            const double s = part->chart().along(p), h = part->chart().up(p);
+            if (h > part->blank_top()) return false;
+            for (std::size_t zone = 0; zone < zones.size(); ++zone) {
+              const auto& ring = part->space(int(zone)).outline();
+              if (s < ring.s_from || s > ring.s_to) continue;
+              const double at = (s - ring.s_from) / (ring.s_to - ring.s_from) * (kStations - 1);
+              const auto k = std::min(std::size_t(at), std::size_t(kStations - 2));
+              std::vector<Vec2> line;
+              for (std::size_t n = 0; n < zones[zone][k].size(); ++n)
+                line.push_back(zones[zone][k][n] + (at - double(k)) * (zones[zone][k + 1][n] - zones[zone][k][n]));
+              const double middle = line[line.size() / 2].x();
+              return under(line, {middle + std::remainder(azimuth(p) - middle, ring.pitch), h});
+            }
+            const auto groove = part->groove();
+            return groove && s > groove->from && s < groove->to && h < *part->groove_floor();
+          }};
+}
+
+std::shared_ptr<const bevel_gear::BevelPart> narrow_curved(double face, double groove) {
+  auto g = groove > 0 ? bevel_test::w3() : bevel_test::w1();
+  g.face_width_mm = face;
+  g.relief_half_width_mm = groove;
+  if (groove > 0) g.apex_cone_distance_mm = 123.438243669 - 0.5 * face;
+  return std::make_shared<bevel_gear::BevelPart>(bevel_test::made(g, bevel_test::pinion_mill()));
+}
+
 struct Case {
   const char* name;
   Solid (*solid)();
@@ -252,6 +293,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"octoid", [] { return solid_of(narrow_bevel(straight_bevel::Form::octoid)); }},
                     Case{"spiral_pinion", [] { return solid_of(narrow_spiral(nasa_pinion())); }},
                     Case{"spiral_wheel", [] { return solid_of(narrow_spiral(formate_wheel())); }},
+                    Case{"curved", [] { return solid_of(narrow_curved(6, 0)); }},
+                    Case{"herringbone", [] { return solid_of(narrow_curved(22, 3.3)); }},
                     Case{"involute", [] { return solid_of(narrow_bevel(straight_bevel::Form::spherical_involute)); }}),
     [](const testing::TestParamInfo<Case>& c) { return std::string(c.param.name); });
 
@@ -322,6 +365,9 @@ TEST(ToolPathsOnASpiral, CutTheSpaceAndNothingElse) {
 }
 TEST(ToolPathsOnACone, CutTheSpaceAndNothingElse) {
   tool_paths_cut_the_space_and_nothing_else(solid_of(narrow_bevel(straight_bevel::Form::octoid)), 1.2);
+}
+TEST(ToolPathsOnACone, CutCurvedSpacesAndNothingElse) {
+  tool_paths_cut_the_space_and_nothing_else(solid_of(narrow_curved(6, 0)), 1.6);
 }
 
 }  // namespace

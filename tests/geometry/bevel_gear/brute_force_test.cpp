@@ -4,7 +4,8 @@
 #include <map>
 #include <random>
 
-#include "geometry/mesh/bevel_mesh.h"
+#include "geometry/bevel_gear/part.h"
+#include "geometry/mesh/tooth_mesh.h"
 #include "tests/geometry/bevel_gear/samples.h"
 #include "tests/support/brute_force_bevel_gear.h"
 
@@ -269,7 +270,8 @@ TEST(BevelBruteForce, EqualBaseCircle) {
 /// Index: the finished gear turned by one pitch is itself.
 TEST(BevelBruteForce, OnePitchOnIsTheSameGear) {
   const bevel_gear::BevelGear g = made(w3(), pinion_mill());
-  const auto mesh = mesh::bevel_gear_mesh(g, {5, 5, 1, 1});
+  const bevel_gear::BevelPart part(g);
+  const auto mesh = mesh::mesh_gear(drawn_solid(part), 0.2);
   ASSERT_TRUE(mesh);
   const auto key = [](const Vec3& p) {
     return std::array<long, 3>{std::lround(p.x() * 1e6), std::lround(p.y() * 1e6), std::lround(p.z() * 1e6)};
@@ -294,15 +296,16 @@ TEST(BevelBruteForce, FacetsOfTheMeshLieOnTheTeeth) {
     const bevel_gear::BevelGear g = made(test.p, test.c);
     const toothpath::test::BruteForceBevelGear brute(
         test.p, {test.c.module_mm, test.c.tip_radius_mm, test.c.rack_depth_mm, test.c.profile_height_mm});
-    std::vector<double> patch;
-    const auto mesh = mesh::bevel_pitch_mesh(g, patch);
-    ASSERT_TRUE(mesh) << mesh.error().message;
+    const bevel_gear::BevelPart part(g);
+    const auto pitch = mesh::mesh_tooth_space(drawn_solid(part), 0.005);
+    ASSERT_TRUE(pitch) << pitch.error().message;
+    const mesh::TriangleMesh* const mesh = &pitch->mesh;
     double most = 0;
     Vec3 at = Vec3::Zero();
     int facets = 0;
-    for (const auto& t : mesh->triangles) {
-      const auto tooth = [&](std::int32_t v) { return patch[std::size_t(v)] <= 2; };
-      if (!tooth(t[0]) || !tooth(t[1]) || !tooth(t[2])) continue;
+    for (std::size_t n = 0; n < mesh->triangles.size(); ++n) {
+      const auto& t = mesh->triangles[n];
+      if (pitch->tags[n].patch > tooth_space::Piece::flank_minus) continue;
       const Vec3 middle =
           (mesh->vertices[std::size_t(t[0])] + mesh->vertices[std::size_t(t[1])] + mesh->vertices[std::size_t(t[2])]) /
           3;
@@ -311,8 +314,8 @@ TEST(BevelBruteForce, FacetsOfTheMeshLieOnTheTeeth) {
       const double off = std::abs(brute.clearance(middle));
       if (off > most) most = off, at = middle;
     }
-    EXPECT_GT(facets, 1000);
-    EXPECT_LT(most, 0.02) << at.transpose() << " ell " << brute.ell_of(at) << " height " << brute.height_of(at);
+    EXPECT_GT(facets, 500);
+    EXPECT_LT(most, 0.005) << at.transpose() << " ell " << brute.ell_of(at) << " height " << brute.height_of(at);
   }
 }
 

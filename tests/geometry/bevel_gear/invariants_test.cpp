@@ -4,7 +4,8 @@
 #include <random>
 
 #include "geometry/bevel_gear/limits.h"
-#include "geometry/mesh/bevel_mesh.h"
+#include "geometry/bevel_gear/part.h"
+#include "geometry/mesh/tooth_mesh.h"
 #include "tests/geometry/bevel_gear/samples.h"
 
 namespace toothpath {
@@ -222,7 +223,8 @@ TEST(BevelExtremes, StraightAtTheLargeEnd) {
   for (int k = 0; k < 2; ++k)
     for (const double height : {-2.0, 0.0, 2.0})
       EXPECT_TRUE(bevel_gear::bevel_inverse(g.halves()[0].walls[k], g.halves()[0].ell_to, height));
-  const auto mesh = mesh::bevel_gear_mesh(g);
+  const bevel_gear::BevelPart part(g);
+    const auto mesh = mesh::mesh_gear(drawn_solid(part));
   EXPECT_TRUE(mesh) << mesh.error().message;
 }
 
@@ -239,7 +241,8 @@ TEST(BevelExtremes, SmallSpiralAnglesHaveTheirWholeWalls) {
           ASSERT_TRUE(beta) << beta_deg << " deg, wall " << wall.sigma << ", ell " << ell << ", p " << p;
           EXPECT_NEAR(wall.generatrix(*beta, p)[0], ell, 1e-9 * g.R_0()) << beta_deg;
         }
-    const auto mesh = mesh::bevel_gear_mesh(g);
+    const bevel_gear::BevelPart part(g);
+    const auto mesh = mesh::mesh_gear(drawn_solid(part));
     EXPECT_TRUE(mesh) << beta_deg << ": " << mesh.error().message;
   }
 }
@@ -303,7 +306,8 @@ TEST(BevelRefusals, NameValueAndLimit) {
 TEST(BevelMesh, ClosedOutwardAndOnTheWalls) {
   for (const auto& p : {w1(), w3()}) {
     const bevel_gear::BevelGear g = made(p, pinion_mill());
-    const auto mesh = mesh::bevel_gear_mesh(g);
+    const bevel_gear::BevelPart part(g);
+    const auto mesh = mesh::mesh_gear(drawn_solid(part));
     ASSERT_TRUE(mesh);
     std::map<std::pair<int, int>, int> edges;
     double volume = 0;

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/cylindrical/part.h"
-#include "geometry/exchange/bevel_shell.h"
+#include "geometry/bevel_gear/part.h"
 #include "geometry/exchange/step_gear.h"
 #include "geometry/exchange/tooth_shell.h"
 #include "geometry/face_gear/inverse.h"
@@ -194,7 +194,7 @@ void expect_exact(const bevel_gear::BevelGear& gear, const StepReader& step, con
     if (patch.tooth > 1) continue;
     ++seen;
     double worst = 0;
-    const bool L = patch.strip.ends_with("L"), wall = L || patch.strip.ends_with("U");
+    const bool L = patch.strip.ends_with("+1"), wall = L || patch.strip.ends_with("-1");
     for (int i = 0; i < kGrid; ++i)
       for (int j = 0; j < kGrid; ++j) {
         const Vec3 p = spline_at(patch.surface, double(i) / (kGrid - 1), double(j) / (kGrid - 1));
@@ -234,7 +234,8 @@ TEST(StepOfBevelGears, ClosedShellsOfExactTeeth) {
       {"herringbone pinion", bevel_test::made(w3(), pinion_mill())},
       {"herringbone wheel", bevel_test::made(w4(), wheel_mill())}};
   for (const auto& [name, gear] : gears) {
-    const StepReader step(step_or_fail(exchange::bevel_gear_shell(gear)));
+    const bevel_gear::BevelPart part(gear);
+    const StepReader step(step_or_fail(exchange::tooth_shell(drawn_solid(part))));
     expect_solid(step, name);
     expect_exact(gear, step, name);
     for (const int id : step.faces()) {
