@@ -87,6 +87,13 @@ constexpr Meaning kJobMeanings[] = {
     {"gear.hub_length", "Length of the hub behind the large end."},
     {"gear.shaft_diameter", "Diameter of a shaft from the small end towards the apex and beyond."},
     {"gear.shaft_length", "Length of that shaft."},
+    {"gear.mill",
+     "The finger mill whose envelope the flanks are, where the job has none to cut them; default: one by the rules of "
+     "docs/bevel_gear.md 4."},
+    {"gear.mill.module", "Module of that mill, below that of the teeth at the small end."},
+    {"gear.mill.tip_radius", "Radius of its corner: the fillet of the teeth."},
+    {"gear.mill.rack_depth", "Depth below the pitch cone to which its profile is an involute."},
+    {"gear.mill.profile_height", "Height above the pitch cone to which its profile goes, at least the addendum."},
     {"stock", "The blank of a face gear before its teeth are cut."},
     {"stock.allowance_top", "Stock above the tips of the teeth."},
     {"stock.groove_depth",

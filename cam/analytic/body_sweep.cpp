@@ -40,7 +40,7 @@ namespace {
 
 constexpr double kWreckDepth = 0.05;    // mm: deeper cuts are followed more coarsely
 constexpr double kSmallestQuad = 1e-5;  // mm: smaller quads are not halved
-constexpr std::size_t kMostPieces = 200000;
+constexpr std::size_t kMostPieces = 400000;
 constexpr int kTeeth = 1 << 20;  // a gear has fewer
 constexpr double kRoundOff = 1 + 1e-9;
 constexpr double kRounding = 1e-9;    // mm: of the bound of a whole cell, with room to spare

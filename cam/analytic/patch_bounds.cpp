@@ -7,6 +7,8 @@ namespace toothpath::analytic {
 namespace {
 
 constexpr double kUnit = 1 + 1e-14;  // covers the rounding of a few operations
+constexpr double kLooseSag = 0.005;  // mm
+constexpr int kSlices = 24;
 
 /// Nothing where a component is not finite.
 std::optional<VectorBound> bound_of(const std::array<Interval, 3>& x) {
@@ -19,6 +21,11 @@ std::optional<VectorBound> bound_of(const std::array<Interval, 3>& x) {
   }
   bound.spread = std::sqrt(sum) * kUnit;
   return bound;
+}
+
+/// Is what a bend may be across a cell mostly what the intervals add, and more than distances are wanted to?
+bool loose(const PatchBend& bend) {
+  return 0.125 * bend.spread_aa > kLooseSag && bend.spread_aa > 2 * bend.aa.norm();
 }
 
 }  // namespace
@@ -42,7 +49,21 @@ std::optional<PatchBend> PatchBend::of(const std::array<std::array<Interval, 3>,
 std::optional<PatchBend> patch_bend(const tooth_space::ToothSpace& space, tooth_space::Piece piece,
                                     const PatchFrame& frame, double half_a, double half_b) {
   const auto jet = space.enclosure(piece, frame, half_a, half_b);
-  return jet ? PatchBend::of(jet->second) : std::nullopt;
+  if (!jet) return {};
+  const auto whole = PatchBend::of(jet->second);
+  if (!whole || !loose(*whole)) return whole;
+  // What intervals add to the truth shrinks with the box: the hull of slices tells better.
+  auto second = jet->second;
+  for (int k = 0; k < kSlices; ++k) {
+    PatchFrame slice = frame;
+    slice.origin += frame.along_a * (half_a * (2.0 * k + 1 - kSlices) / kSlices);
+    const auto part = space.enclosure(piece, slice, half_a / kSlices * kUnit, half_b);
+    if (!part) return whole;
+    for (std::size_t n = 0; n < second.size(); ++n)
+      for (std::size_t c = 0; c < 3; ++c)
+        second[n][c] = k == 0 ? part->second[n][c] : hull(second[n][c], part->second[n][c]);
+  }
+  return PatchBend::of(second);
 }
 
 std::optional<VectorBound> end_curve_bend(const tooth_space::ToothSpace& space, tooth_space::Piece piece,

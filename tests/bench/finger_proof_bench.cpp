@@ -1,9 +1,12 @@
 // The two proofs that a finger mill does not gouge, on the plans of jobs: the finger mill's own (distance of its path to
 // the wall paths) and that of any mill (cutting part as convex bodies against the exact surface).
-//   toothpath_finger_proof_bench JOB..
+//   toothpath_finger_proof_bench MOVES JOB..
+// of each job as many moves, from the middle of its last operation.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdlib>
 
 #include "app/job/file.h"
 #include "app/process/gear_of_job.h"
@@ -28,7 +31,7 @@ auto timed(double& seconds, const Work& work) {
   return result;
 }
 
-int compare(const char* file) {
+int compare(const char* file, std::size_t moves) {
   auto read = job::read_job_file(file);
   if (const auto* errors = read.refused()) return fmt::print("{}: {}\n", file, errors->front().message), 1;
   const job::Job& job = *read.value_if();
@@ -51,6 +54,10 @@ int compare(const char* file) {
     if (!own) return fmt::print("{}: {}\n", file, own.error().message), 1;
     tools[k] = tool::proof_tool(tool::finger_profile(own->cutter(), job.tools[k], kSag), job.tools[k].number, kSag);
   }
+  std::erase_if(motions, [&](const path::ToolMotion& m) { return m.operation + 1 != int(job.operations.size()); });
+  const std::size_t first = motions.size() > moves ? (motions.size() - moves) / 2 : 0;
+  motions.assign(motions.begin() + std::ptrdiff_t(first),
+                 motions.begin() + std::ptrdiff_t(std::min(motions.size(), first + moves)));
   double own_s = 0, index_s = 0, any_s = 0;
   const finger::FingerGougeCheck own(gear, job.tools, job.operations, limits);
   const auto by_paths = timed(own_s, [&] { return own.verify(motions); });
@@ -76,6 +83,7 @@ int main(int argc, char** argv) {
   fmt::print("{:<40} {:>6} | {:>25} | {:>33}\n{:<40} {:>6} | {:>8} {:>8} {:>7} | {:>8} {:>8} {:>7} {:>7}\n", "job", "",
              "own proof", "proof of any mill", "", "moves", "um", "bound", "s", "um", "bound", "index s", "s");
   int failed = 0;
-  for (int k = 1; k < argc; ++k) failed += compare(argv[k]);
+  const int moves = argc > 1 ? std::atoi(argv[1]) : 0;
+  for (int k = 2; k < argc; ++k) failed += compare(argv[k], std::size_t(moves));
   return failed > 0;
 }

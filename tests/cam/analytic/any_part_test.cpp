@@ -17,6 +17,7 @@
 #include "tests/geometry/cylindrical/samples.h"
 #include "tests/geometry/spiral_bevel/samples.h"
 #include "tests/geometry/straight_bevel/samples.h"
+#include "tests/support/brute_force_bevel_gear.h"
 #include "tests/support/random.h"
 #include "tests/support/sample_tools.h"
 
@@ -368,6 +369,40 @@ TEST(ToolPathsOnACone, CutTheSpaceAndNothingElse) {
 }
 TEST(ToolPathsOnACone, CutCurvedSpacesAndNothingElse) {
   tool_paths_cut_the_space_and_nothing_else(solid_of(narrow_curved(6, 0)), 1.6);
+}
+
+/// Where the ball is, the finger mill that defines the flanks has been.
+TEST(ToolPathsOnACone, StayWhereTheFingerMillHasBeen) {
+  constexpr double kBall = 1.6, kFace = 5;
+  const auto part = narrow_curved(kFace, 0);
+  const auto data = bevel_test::pinion_mill();
+  const BruteForceBevelGear brute(part->gear().parameters(),
+                                  {data.module_mm, data.tip_radius_mm, data.rack_depth_mm, data.profile_height_mm});
+  const std::vector<tool::ToolAssembly> tools{ball_mill(kBall, 9, kBall, 22, 10)};
+  auto finish = operation(path::OperationType::finishing, 0);
+  finish.scallop_mm = 0.02;
+  finish.chord_tolerance_mm = 0.002;
+  const analytic::GearDistance distance(part, ball::reach_of(tools));
+  auto planned = plan::plan_milling(distance, tools, {finish}, {});
+  ASSERT_FALSE(planned.refused()) << planned.refused()->diagnostic.message;
+  Random random(9);
+  int looked = 0, deep = 0;
+  double nearest = INFINITY;
+  const auto& records = planned.value_if()->paths[0].records;
+  for (std::size_t k = 0; k < records.size(); k += 7)
+    for (int n = 0; n < 6; ++n) {
+      const auto& record = records[k];
+      const Vec3 p = record.tip + 0.5 * kBall * (record.axis + random.vector(1).normalized());
+      const double ell = -part->chart().along(p);
+      if (ell < part->gear().R_i() || ell > part->gear().R_e() || part->chart().up(p) > part->blank_top()) continue;
+      const double left = brute.clearance(p);
+      ++looked;
+      deep += left > 0.003 ? 1 : 0;
+      nearest = std::min(nearest, std::abs(left));
+    }
+  EXPECT_GT(looked, 300);
+  EXPECT_EQ(deep, 0) << "of " << looked;
+  EXPECT_LT(nearest, 0.005);
 }
 
 }  // namespace
