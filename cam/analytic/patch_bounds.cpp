@@ -24,9 +24,7 @@ std::optional<VectorBound> bound_of(const std::array<Interval, 3>& x) {
 }
 
 /// Is what a bend may be across a cell mostly what the intervals add, and more than distances are wanted to?
-bool loose(const PatchBend& bend) {
-  return 0.125 * bend.spread_aa > kLooseSag && bend.spread_aa > 2 * bend.aa.norm();
-}
+bool loose(const PatchBend& bend) { return 0.125 * bend.spread_aa > kLooseSag && bend.spread_aa > 2 * bend.aa.norm(); }
 
 }  // namespace
 

@@ -39,7 +39,7 @@ struct BevelGearParameters {
   // What the blank has beside its teeth: cylinders about its axis, 0: none. The tool must not meet them.
   double hub_diameter_mm = 0, hub_length_mm = 0;      ///< behind the root of the large end
   double shaft_diameter_mm = 0, shaft_length_mm = 0;  ///< from the root of the small end towards the apex and beyond
-  std::optional<FingerCutterData> mill = {};  ///< whose envelope the walls are, where no finger mill cuts them
+  std::optional<FingerCutterData> mill = {};          ///< whose envelope the walls are, where no finger mill cuts them
   std::vector<modification::Modification> modifications = {};  ///< of the flanks: `right` is wall U; zones are halves
 };
 

@@ -6,8 +6,8 @@
 // its end. Flanks: u is the parameter p of the mill's profile above B. Fillets: the
 // corner arc by cot(psi) = w_0 sinh(u), 0 at the root: near the root the contact swings from the path's normal to the
 // generatrix while cot(psi) passes w_0. Where the path itself runs along the generatrix, it swings through in no
-// height at all: there fillets end at cot(psi) = kFlat, 5e-5 of their radius above the root. Root: the share of the way between the fillets' ends. Wall L is the plus
-// flank.
+// height at all: there fillets end at cot(psi) = kFlat, 5e-5 of their radius above the root. Root: the share of the way
+// between the fillets' ends. Wall L is the plus flank.
 #pragma once
 
 #include <array>
@@ -106,9 +106,7 @@ class WallKernel {
   [[nodiscard]] const Pair<S>& walls() const {
     return std::get<Pair<S>>(walls_);
   }
-  static std::size_t wall_of(Piece piece) {
-    return piece == Piece::flank_plus || piece == Piece::fillet_plus ? 0 : 1;
-  }
+  static std::size_t wall_of(Piece piece) { return piece == Piece::flank_plus || piece == Piece::fillet_plus ? 0 : 1; }
   [[nodiscard]] Branch branch_at(Piece piece, double u, double v) const;
   /// v at which a piece has no place any more. Straight paths go on; the others turn about the end of the trace.
   [[nodiscard]] double begin(Piece piece) const {
@@ -209,7 +207,7 @@ class WallKernel {
   double h_a_ = 0, pitch_ = 0, ell_from_ = 0, ell_to_ = 0;
   double least_turn_ = 0;
   double begin_ = 0;  ///< -R_0
-  double flat_ = 0;  ///< cot(psi) where fillets end; above 0 where the path runs along the generatrix somewhere
+  double flat_ = 0;   ///< cot(psi) where fillets end; above 0 where the path runs along the generatrix somewhere
   std::array<double, 2> turn_{};        ///< w_0 of the fillets of L, U
   std::array<double, 2> fillet_end_{};  ///< u at B
 };

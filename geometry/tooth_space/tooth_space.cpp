@@ -20,8 +20,7 @@ std::optional<CurveBend> ToothSpace::tip_azimuth(int side, const EdgePlace& from
   const Vec2 a(from.u, from.v), b(to.u, to.v), way = (b - a).cwiseAbs();
   const PatchFrame frame{0.5 * (a + b), Vec2::UnitX(), Vec2::UnitY()};
   // Where the edge hardly moves in u, the spread of its slope comes from the length of the box in v alone.
-  for (const auto& [of_u, of_v] :
-       {std::pair(1e-6, 1e-6), {1e-4, 1e-4}, {1e-2, 1e-2}, {1e-4, 0.0}, {1e-2, 0.0}}) {
+  for (const auto& [of_u, of_v] : {std::pair(1e-6, 1e-6), {1e-4, 1e-4}, {1e-2, 1e-2}, {1e-4, 0.0}, {1e-2, 0.0}}) {
     const double du = 2 * way.x() + of_u, dv = 2 * way.y() + of_v;
     const auto jet = enclosure(flank_of(side), frame, 0.5 * way.x() + du, 0.5 * way.y() + dv);
     if (!jet) continue;

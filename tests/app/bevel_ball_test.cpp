@@ -28,7 +28,8 @@ TEST(BevelByBallMills, IsVerifiedAndNamesTheMillThatDefinesIt) {
   EXPECT_GT(report.at("excess_um").at("finished").at("max").get<double>(), 20);
   bool named = false;
   for (const auto& warning : report.at("warnings"))
-    named = named || warning.get<std::string>().starts_with("the flanks are those that a finger mill by the rules leaves");
+    named =
+        named || warning.get<std::string>().starts_with("the flanks are those that a finger mill by the rules leaves");
   EXPECT_TRUE(named);
   const std::string points = file_text(dir / "out/inspection.csv");
   EXPECT_NE(points.find("\n0,L,0,0,"), std::string::npos);

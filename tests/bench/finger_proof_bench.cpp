@@ -1,5 +1,5 @@
-// The two proofs that a finger mill does not gouge, on the plans of jobs: the finger mill's own (distance of its path to
-// the wall paths) and that of any mill (cutting part as convex bodies against the exact surface).
+// The two proofs that a finger mill does not gouge, on the plans of jobs: the finger mill's own (distance of its path
+// to the wall paths) and that of any mill (cutting part as convex bodies against the exact surface).
 //   toothpath_finger_proof_bench MOVES JOB..
 // of each job as many moves, from the middle of its last operation.
 #include <fmt/format.h>

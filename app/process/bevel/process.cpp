@@ -35,7 +35,7 @@ finger::FingerCheckOptions check_options(const process::FlankGrid& grid) {
 class FingerMilling final : public process::GearMilling {
  public:
   FingerMilling(const job::Job& job, const machines::Machine& machine, const bevel_gear::BevelGear& gear,
-               const proof::ProofLimits& limits, const process::FlankGrid& grid)
+                const proof::ProofLimits& limits, const process::FlankGrid& grid)
       : job_(job),
         gear_(gear),
         limits_(limits),
@@ -149,8 +149,8 @@ class BevelProcess : public milled::ToothedProcess {
     out.body = {links, {links.radius_mm, 0, links.z_max_mm, links.z_min_mm, proof::Roof(part)}};
     out.outline = bevel::outline(gear);
     out.subtitle = fmt::format("equal-base-circle bevel gear z {}, outer module {:g} mm, {}, pitch angle {:.4f} deg",
-                               p.teeth, p.outer_transverse_module_mm, gear.herringbone() ? "herringbone" : "single hand",
-                               degrees(gear.delta()));
+                               p.teeth, p.outer_transverse_module_mm,
+                               gear.herringbone() ? "herringbone" : "single hand", degrees(gear.delta()));
     out.limits_json = [&gear] { return bevel::limits_json(gear); };  // the gear lives as long as the part
     return out;
   }
@@ -174,8 +174,9 @@ class FingerProcess final : public BevelProcess {
   }
   [[nodiscard]] Result<process::SceneGear> scene(double clearance_mm) const override {
     // W stands in the pitch apex.
-    process::SceneGear out{
-        gear().facts.teeth, clearance_mm, {}, [gear = bevel()](const Vec3& tip) { return azimuth_from_space_0(gear, tip); }};
+    process::SceneGear out{gear().facts.teeth, clearance_mm, {}, [gear = bevel()](const Vec3& tip) {
+                             return azimuth_from_space_0(gear, tip);
+                           }};
     out.bodies.resize(job().tools.size());
     for (const auto& operation : job().operations) {
       const auto k = std::size_t(operation.tool);
@@ -212,10 +213,11 @@ process::ValueOrErrors<std::unique_ptr<process::GearProcess>> make_process(const
   if (!ball_milled(job))
     return std::unique_ptr<process::GearProcess>(std::make_unique<FingerProcess>(job, std::move(part)));
   if (part->gear().parameters().shaft_diameter_mm > 0)
-    return std::vector{fail_at(job.where("gear.shaft_diameter"),
-                               "shaft_diameter = {:g} mm: ball mills do not look at a shaft before the small end; leave "
-                               "it out and hold it as a [[body]] of the machine, or cut with the finger mill",
-                               part->gear().parameters().shaft_diameter_mm)};
+    return std::vector{
+        fail_at(job.where("gear.shaft_diameter"),
+                "shaft_diameter = {:g} mm: ball mills do not look at a shaft before the small end; leave "
+                "it out and hold it as a [[body]] of the machine, or cut with the finger mill",
+                part->gear().parameters().shaft_diameter_mm)};
   return std::unique_ptr<process::GearProcess>(std::make_unique<BevelProcess>(job, std::move(part)));
 }
 

@@ -23,8 +23,7 @@ namespace toothpath::milled {
 /// inspection.csv, gear.stl (all teeth, sag at most 0.01 mm) and tooth.vtp: the surface as it was cut with its
 /// deviation; without one, a pitch (sag at most 0.002 mm) with the number of the patch at every point.
 [[nodiscard]] Status write_bodies(process::GearFiles& to, const tooth_space::ToothedSolid& gear,
-                                  const std::string& job_name,
-                                  const std::function<Result<std::string>()>& inspection,
+                                  const std::string& job_name, const std::function<Result<std::string>()>& inspection,
                                   const std::vector<proof::SurfaceGrid>& surface, app::StageClock& clock);
 
 }  // namespace toothpath::milled

@@ -76,7 +76,8 @@ Status ToothedProcess::write_files(app::OutputDir& output, const std::vector<pro
                                 page::standalone_svg(charts[zone]));
         !s)
       return s;
-  return write_bodies(to, gear_.solid, job_.name, [&] { return inspection_text(); }, surface, clock);
+  return write_bodies(
+      to, gear_.solid, job_.name, [&] { return inspection_text(); }, surface, clock);
 }
 std::unique_ptr<process::GearMilling> ToothedProcess::milling(const machines::Machine& machine,
                                                               const proof::ProofLimits& limits,

@@ -224,7 +224,7 @@ TEST(BevelExtremes, StraightAtTheLargeEnd) {
     for (const double height : {-2.0, 0.0, 2.0})
       EXPECT_TRUE(bevel_gear::bevel_inverse(g.halves()[0].walls[k], g.halves()[0].ell_to, height));
   const bevel_gear::BevelPart part(g);
-    const auto mesh = mesh::mesh_gear(drawn_solid(part));
+  const auto mesh = mesh::mesh_gear(drawn_solid(part));
   EXPECT_TRUE(mesh) << mesh.error().message;
 }
 

@@ -35,7 +35,8 @@ Vec2 place_in(const WallSpace& space, Piece piece, Random& random) {
   const auto& ring = space.outline();
   auto b = space.borders(piece);
   const int side = piece == Piece::flank_plus ? 1 : -1;
-  if (is_flank(piece)) (std::isinf(b.from) ? b.from : b.to) = kernel.about_tip(side, 0.5 * (ring.s_from + ring.s_to))[0];
+  if (is_flank(piece))
+    (std::isinf(b.from) ? b.from : b.to) = kernel.about_tip(side, 0.5 * (ring.s_from + ring.s_to))[0];
   return {b.from + random(0, 1) * (b.to - b.from), kernel.v_at(piece, 0, random(ring.s_from, ring.s_to))};
 }
 
@@ -80,8 +81,10 @@ TEST(WallKernel, PiecesJoinWithOneNormal) {
       const auto& ring = space.outline();
       for (int k = 0; k <= 10; ++k) {
         const double v = space.kernel().v_at(Piece::root, 0, ring.s_from + 0.1 * k * (ring.s_to - ring.s_from));
-        for (const auto& [a, b] : {std::pair(Piece::flank_plus, Piece::fillet_plus), {Piece::fillet_plus, Piece::root},
-                                   {Piece::root, Piece::fillet_minus}, {Piece::fillet_minus, Piece::flank_minus}}) {
+        for (const auto& [a, b] : {std::pair(Piece::flank_plus, Piece::fillet_plus),
+                                   {Piece::fillet_plus, Piece::root},
+                                   {Piece::root, Piece::fillet_minus},
+                                   {Piece::fillet_minus, Piece::flank_minus}}) {
           const auto before = space.at(a, space.borders(a).to, v), after = space.at(b, space.borders(b).from, v);
           ASSERT_TRUE(before && after);
           EXPECT_LT((before->p - after->p).norm(), 1e-10) << to_string(a);

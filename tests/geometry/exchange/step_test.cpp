@@ -1,8 +1,8 @@
 // The STEP file of a gear, read back: a closed shell, and its teeth against the exact surfaces.
 #include <gtest/gtest.h>
 
-#include "geometry/cylindrical/part.h"
 #include "geometry/bevel_gear/part.h"
+#include "geometry/cylindrical/part.h"
 #include "geometry/exchange/step_gear.h"
 #include "geometry/exchange/tooth_shell.h"
 #include "geometry/face_gear/inverse.h"
