@@ -71,10 +71,15 @@ text::NcDialect fanuc_words() {
   return d;
 }
 
-std::optional<readback::ActingComment> text_behind_end_of_block(std::string_view line) {
+std::optional<readback::ActingComment> fanuc_acting_comment(std::string_view line) {
+  if (const std::size_t first = line.find_first_not_of(" \t"); first < line.size() && line[first] == '%') return {};
   bool comment = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
     if (line[i] == '(' || line[i] == ')') comment = line[i] == '(';
+    if (line[i] == '%' && comment)
+      return readback::ActingComment{static_cast<int>(i) + 1,
+                                     "% in a comment: this control takes it for the end of the text when it reads it "
+                                     "in, and what follows is not there"};
     if (line[i] != ';' || comment) continue;
     if (line.find_first_not_of(" \t\r;", i) == std::string_view::npos) return std::nullopt;
     return readback::ActingComment{static_cast<int>(i) + 1,
@@ -86,7 +91,7 @@ std::optional<readback::ActingComment> text_behind_end_of_block(std::string_view
 
 iso::IsoLanguage fanuc_language() {
   iso::IsoLanguage l;
-  l.acting_comment = text_behind_end_of_block;
+  l.acting_comment = fanuc_acting_comment;
   l.g_tenths = {434, 531, 610, 640, 682, 690};
   l.stops_at_corners = l.moves_zeros = true;
   l.extended = {.tenths = 541, .last = kLastExtended};
@@ -99,8 +104,7 @@ iso::IsoLanguage fanuc_language() {
 WorkOffsets fanuc_offsets() { return {"G54 to G59 and G54.1 P1 to P300", has_offset}; }
 
 Control fanuc() {
-  return {fanuc_words(), {},           fanuc_offsets(),      execute,
-          false,         std::nullopt, probing::g31_probing, text_behind_end_of_block};
+  return {fanuc_words(), {}, fanuc_offsets(), execute, false, std::nullopt, probing::g31_probing, fanuc_acting_comment};
 }
 
 }  // namespace toothpath::controls

@@ -32,7 +32,7 @@ const iso::IsoLanguage& language() {
   static const iso::IsoLanguage l = [] {
     iso::IsoLanguage haas;
     haas.g_tenths = {610, 640, 690};
-    haas.acting_comment = text_behind_end_of_block;
+    haas.acting_comment = fanuc_acting_comment;
     haas.stops_at_corners = haas.moves_zeros = haas.local_calls = true;
     haas.dwell = iso::DwellNumber::by_point;
     haas.bare_reference = true;
@@ -64,7 +64,7 @@ Control haas() {
           false,
           std::nullopt,
           probing::g31_probing,
-          text_behind_end_of_block};
+          fanuc_acting_comment};
 }
 
 }  // namespace toothpath::controls

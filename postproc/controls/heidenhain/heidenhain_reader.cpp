@@ -211,6 +211,10 @@ class Heidenhain {
     const auto n = parameter_number(s);
     s.skip_blanks();
     if (!n || !s.take("=")) return here(column, "Q parameter and = expected");
+    if (*n >= 100 && *n <= 199)
+      return here(column, fmt::format("Q{} belongs to the control, which fills Q100 to Q199 itself (tool, spindle, "
+                                      "probe): take one below Q100",
+                                      *n));
     const auto v = expression(s);
     if (!v) return v.error();
     parameters_[*n] = *v;

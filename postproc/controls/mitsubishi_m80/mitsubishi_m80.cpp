@@ -29,7 +29,7 @@ Status execute(std::string_view text, const std::string& file, const readback::N
 
 Control mitsubishi_m80() {
   return {words(), {"mitsubishi", "m80"}, fanuc_offsets(),      execute,
-          false,   std::nullopt,          probing::g31_probing, text_behind_end_of_block};
+          false,   std::nullopt,          probing::g31_probing, fanuc_acting_comment};
 }
 
 }  // namespace toothpath::controls

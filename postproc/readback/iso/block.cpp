@@ -104,6 +104,12 @@ class Parser {
       else ++digits;
       ++i_;
     }
+    if (digits == 0 && begin > 0 && is_letter(line_[begin - 1]) && is_letter(at())) {  // POPEN
+      std::size_t end = begin;
+      while (end < line_.size() && is_letter(line_[end])) ++end;
+      stop(begin - 1, fmt::format("{} is not in the subset", line_.substr(begin - 1, end - begin + 1)));
+      return std::nullopt;
+    }
     if (digits == 0 || digits > 18) {
       stop(begin, digits == 0 ? "number without digits" : "number of more than 18 digits");
       return std::nullopt;
@@ -113,14 +119,22 @@ class Parser {
     return line_[begin] == '-' ? -v : v;
   }
 
+  /// Variables of macro programs: local and common ones.
+  static bool is_of_programs(int n) { return n <= 33 || (n >= 100 && n <= 199) || (n >= 500 && n <= 999); }
   std::optional<std::int32_t> parameter_index() {
     ++i_;  // '#'
     const std::size_t begin = i_;
     int n = 0;
     while (is_digit(at()) && n < 100000) n = n * 10 + (line_[i_++] - '0');
-    const int last = o_words_ ? kLastParameter : kLastOfProgram;
-    if (i_ == begin || n < 1 || n > last) {
-      stop(begin, fmt::format("parameter number must be 1 to {}", last));
+    if (i_ == begin || n < 1 || (o_words_ && n > kLastParameter)) {
+      stop(begin, o_words_ ? fmt::format("parameter number must be 1 to {}", kLastParameter)
+                           : std::string("number of a variable expected behind #"));
+      return std::nullopt;
+    }
+    if (!o_words_ && !is_of_programs(n)) {
+      stop(begin - 1, fmt::format("#{} is a variable of the control (tool offsets, alarms, stops, outputs, modes): a "
+                                  "program has #1 to #33, #100 to #199 and #500 to #999 for itself",
+                                  n));
       return std::nullopt;
     }
     return n;

@@ -66,6 +66,9 @@ TEST(ActingComments, TextBehindTheEndOfABlock) {
     for (const char* line : {"G1 X6. F100. ; G53 G0 Z0.", "; G53 G0 Z0.", ";M5", "(a) ;M5", "G1 X6. F100.;;M5"})
       EXPECT_TRUE(holds(executed(d, std::string(line) + "\n").refused, "text behind ; which ends a block"))
           << d << line;
+    for (const char* line : {"(50%)", "G1 X6. F100. (A % B)", "/ (%", "N10 (A) (%)"})
+      EXPECT_TRUE(holds(executed(d, std::string(line) + "\n").refused, "% in a comment: this control takes it"))
+          << d << line;
     for (const char* line : {"G1 X6. F100. ;", "G1 X6. F100. (A; B)", ";", "(A; B) ; "})
       EXPECT_EQ(executed(d, std::string(line) + "\n").refused, "") << d << line;
   }

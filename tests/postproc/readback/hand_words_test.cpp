@@ -1,5 +1,6 @@
 // Words that people add to a program by hand, in every dialect: waits, stops, several M words in a block, reference
 // positions, named parameters. What they do is told by hand, and for LinuxCNC by its own interpreter.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -210,7 +211,33 @@ TEST(HandWords, NamedParametersOfLinuxCnc) {
   EXPECT_TRUE(holds(refused("#<_c>=4\n"), "p:16:1: error: #<_c> is the control's own and cannot be set"));
   EXPECT_TRUE(holds(refused("#<a=4\n"), "name of a parameter without its >"));
   EXPECT_TRUE(holds(refused("#<>=4\n"), "a parameter without a name"));
-  EXPECT_TRUE(holds(executed("fanuc", "#<a>=4\n").refused, "parameter number must be 1 to 5000"));
+  EXPECT_TRUE(holds(executed("fanuc", "#<a>=4\n").refused, "number of a variable expected behind #"));
+}
+
+// Tool offsets, outputs, alarms, what stops do, modal words: a text that writes them is no longer the one that is read.
+TEST(HandWords, VariablesOfTheControlAreNotOfAProgram) {
+  for (const char* d : {"fanuc", "haas", "mitsubishi_m80"}) {
+    for (const int n : {34, 99, 200, 499, 1000, 1100, 2001, 3000, 3004, 3006, 4001, 5000, 5221, 10001})
+      for (const std::string line : {"#{}=1\n", "#100=#{}\n", "G1 X#{} F100.\n", "G1 X[#{}+1] F100.\n"}) {
+        const std::string refused = executed(d, fmt::format(fmt::runtime(line), n)).refused;
+        EXPECT_TRUE(holds(refused, fmt::format("#{} is a variable of the control", n))) << d << line << refused;
+      }
+    for (const int n : {1, 33, 100, 199, 500, 999})
+      EXPECT_EQ(executed(d, fmt::format("#{}=1\n", n) + cut(d)).refused, "") << d << n;
+    for (const char* name : {"POPEN", "DPRNT[X]", "SETVN 100[A]"})
+      EXPECT_TRUE(holds(executed(d, std::string(name) + "\n").refused, " is not in the subset")) << d << name;
+  }
+}
+
+// A tool call puts the radius of the tool in Q108, whatever the program wrote there.
+TEST(HandWords, HeidenhainFillsItsOwnParameters) {
+  for (const int n : {100, 108, 114, 199})
+    for (const char* form : {"Q{} = +1\n", "FN 0: Q{} = +1\n"}) {
+      const std::string refused = executed("heidenhain", fmt::format(fmt::runtime(form), n)).refused;
+      EXPECT_TRUE(holds(refused, fmt::format("Q{} belongs to the control", n))) << refused;
+    }
+  for (const int n : {1, 99, 200, 1999})
+    EXPECT_EQ(executed("heidenhain", fmt::format("Q{} = +1\n", n) + cut("heidenhain")).refused, "") << n;
 }
 
 // LinuxCNC's own interpreter goes where our reader says, move by move, and waits as long.
