@@ -6,6 +6,8 @@
 namespace toothpath::ball {
 namespace {
 
+constexpr std::size_t kMostPlaces = 1'000'000;  // of one tooth space: 300 bytes each, until they are a program
+
 // Of the ball's radius: where a pass has nothing to cut for longer, it is left and taken up again behind.
 constexpr double kShortestIdle = 6;
 
@@ -175,11 +177,20 @@ class RoughingPlanner {
         pass.points.assign(line->points.begin() + long(from), line->points.begin() + long(to) + 1);
         pass.outward = (share <= 0.5) == o_.climb;
         if (!pass.outward) std::reverse(pass.points.begin(), pass.points.end());
+        places_ += pass.points.size();
+        if (places_ > kMostPlaces) return too_many();
         out_.passes.push_back(std::move(pass));
       }
       opens = opens && stretches.empty();
     }
     return Ok{};
+  }
+
+  [[nodiscard]] Diagnostic too_many() const {
+    return fail(
+        "step_down = {:g} mm and step_over = {:g} mm: {} layers of one tooth space have more than {} places, "
+        "and that is not all of them; larger steps have fewer",
+        o_.step_down_mm, o_.step_over_mm, out_.layers + 1, kMostPlaces);
   }
 
   /// First and last points of the stretches in which a ball along these centres removes what earlier operations left:
@@ -231,6 +242,7 @@ class RoughingPlanner {
   const std::vector<const cut::Removed*>& cleared_;
   double from_ = 0, to_ = 0;
   std::vector<Walls> walls_;  ///< one a station
+  std::size_t places_ = 0;    ///< of all passes
   RoughingPasses out_;
 };
 

@@ -163,5 +163,19 @@ TEST(SmallHeights, BordersBetweenOperationsKeepTheCusp) {
   }
 }
 
+// Every number by itself may be asked for: together they would fill the memory.
+TEST(SmallSteps, AreRefusedBeforeTheyFillTheMemory) {
+  const auto gear = test::made(test::small_spur());
+  const std::vector<tool::ToolAssembly> tools = {test::ball_mill(1, 5.2, 0.95, 16, 10)};
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of(tools));
+  plan::Options options;
+  options.trial = true;
+  const auto planned = plan::plan_milling(part, tools, {test::roughing(0, 0.001, 0.001, 0.1)}, options);
+  ASSERT_TRUE(planned.refused());
+  EXPECT_NE(planned.refused()->diagnostic.message.find("step_down = 0.001 mm and step_over = 0.001 mm"),
+            std::string::npos)
+      << planned.refused()->diagnostic.message;
+}
+
 }  // namespace
 }  // namespace toothpath
