@@ -29,6 +29,16 @@ machines::Machine trunnion_machine(double px, double py, double tilt_y, double t
   return m;
 }
 
+// A text that lost its decimal point is judged, not followed for millions of turns.
+TEST(PartSwing, MoreThanOneTurnShowsNothingNew) {
+  const machines::Machine m = trunnion_machine(1, 2, 3, 4, 1);
+  const auto turned = [&](double to) {
+    return sheet::part_swing({80, -30, 12}, {}, m, {{'Z', false, 200, 400, 0, 500}, {'A', true, 0, to, -2, 2}});
+  };
+  EXPECT_EQ(turned(2 * kPi).top_mm, turned(1e9).top_mm);
+  EXPECT_EQ(turned(2 * kPi).bottom_mm, turned(1e9).bottom_mm);
+}
+
 TEST(PartSwing, HoldsEveryPointOfTheBlank) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(-1, 1);

@@ -78,7 +78,8 @@ PartSwing part_swing(const BlankCylinder& blank, const joints::Setup& setup, con
     double reach = 0;
     for (const Vec3& p : points) reach = std::max(reach, circle(p, tilt).second);
     out.axes.push_back({tilt.letter, reach, std::nullopt});
-    const auto [from, to] = range_of(axes, tilt.letter);
+    const auto [from, most] = range_of(axes, tilt.letter);
+    const double to = std::min(most, from + 2 * kPi);  // a text that lost its point may turn for millions of degrees
     const int n = std::max(1, static_cast<int>(std::ceil((to - from) / kSwingStep)));
     const double slack = reach * (1 - std::cos((to - from) / n / 2));  // an arc between two samples rises by no more
     for (int i = 0; i <= n; ++i) {
