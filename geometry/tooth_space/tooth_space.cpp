@@ -13,16 +13,30 @@ std::optional<PatchFoot> ToothSpace::next_foot(Piece piece, const Vec3& c, const
   return parallel.dot(q.pu.cross(q.pv)) > 0 ? f : std::nullopt;
 }
 
-std::optional<CurveBend> ToothSpace::tip_azimuth(int side, const EdgePlace& from, double s_from, const EdgePlace& to,
-                                                 double s_to) const {
-  const Chart& chart = outline().chart;
-  const CurveBend tip = tip_bend(s_from, s_to);
-  const Vec2 a(from.u, from.v), b(to.u, to.v), way = (b - a).cwiseAbs();
+namespace {
+
+/// Does a curve that starts at one end of `way` and has this slope over a step stay within `slack` of it?
+bool stays(const Interval& slope, double step, double way, double slack) {
+  const Interval moves = slope * Interval(step);
+  return std::min(0.0, moves.low) >= std::min(0.0, way) - slack &&
+         std::max(0.0, moves.high) <= std::max(0.0, way) + slack;
+}
+
+std::optional<CurveBend> azimuth_of_edge(const ToothSpace& space, int side, const EdgePlace& from, double s_from,
+                                         const EdgePlace& to, double s_to, int halvings) {
+  const Chart& chart = space.outline().chart;
+  const CurveBend tip = space.tip_bend(s_from, s_to);
+  const Vec2 a(from.u, from.v), b(to.u, to.v), way = b - a;
   const PatchFrame frame{0.5 * (a + b), Vec2::UnitX(), Vec2::UnitY()};
-  // Where the edge hardly moves in u, the spread of its slope comes from the length of the box in v alone.
-  for (const auto& [of_u, of_v] : {std::pair(1e-6, 1e-6), {1e-4, 1e-4}, {1e-2, 1e-2}, {1e-4, 0.0}, {1e-2, 0.0}}) {
-    const double du = 2 * way.x() + of_u, dv = 2 * way.y() + of_v;
-    const auto jet = enclosure(flank_of(side), frame, 0.5 * way.x() + du, 0.5 * way.y() + dv);
+  // Boxes around the stretch, wider and wider: the curve must be seen to stay in one. Where it hardly moves in u, the
+  // spread of its slope comes from the length of the box in v alone.
+  struct Room {
+    double growth, of_u, of_v;
+  };
+  for (const Room& room :
+       {Room{0.2, 1e-6, 1e-6}, {2, 1e-6, 1e-6}, {2, 1e-4, 1e-4}, {2, 1e-2, 1e-2}, {2, 1e-4, 0}, {2, 1e-2, 0}}) {
+    const double du = room.growth * std::abs(way.x()) + room.of_u, dv = room.growth * std::abs(way.y()) + room.of_v;
+    const auto jet = space.enclosure(flank_of(side), frame, 0.5 * std::abs(way.x()) + du, 0.5 * std::abs(way.y()) + dv);
     if (!jet) continue;
     // The edge is h = tip(s): with s for its parameter, two linear equations for (u', v') and again for (u'', v'').
     const BoxCoordinate s(*jet, chart.cosine, -chart.sine), h(*jet, chart.sine, chart.cosine);
@@ -32,8 +46,7 @@ std::optional<CurveBend> ToothSpace::tip_azimuth(int side, const EdgePlace& from
     };
     const auto first = solved(Interval(1), tip.slope);
     const Interval &u1 = first[0], &v1 = first[1];
-    // Followed from its first place, the edge cannot leave the box within the step.
-    if (!(u1.magnitude() * (s_to - s_from) <= du) || !(v1.magnitude() * (s_to - s_from) <= dv)) continue;
+    if (!stays(u1, s_to - s_from, way.x(), du) || !stays(v1, s_to - s_from, way.y(), dv)) continue;
     const auto bent = [&](const std::array<Interval, 3>& second) {
       return along(second[0], second[1], second[2], u1, v1);
     };
@@ -49,7 +62,22 @@ std::optional<CurveBend> ToothSpace::tip_azimuth(int side, const EdgePlace& from
     const Interval bend = (x * bent_edge(1) - y * bent_edge(0)) / q - Interval(2) * slope * (x * x1 + y * y1) / q;
     if (slope.finite() && bend.finite()) return CurveBend{slope, bend};
   }
-  return {};
+  if (halvings == 0) return {};
+  const double s_middle = 0.5 * (s_from + s_to);
+  const auto middle = space.tip_edge(side, s_middle, from);
+  if (!middle) return {};
+  const auto first = azimuth_of_edge(space, side, from, s_from, *middle, s_middle, halvings - 1);
+  const auto second = first ? azimuth_of_edge(space, side, *middle, s_middle, to, s_to, halvings - 1) : std::nullopt;
+  if (!second) return {};
+  return CurveBend{hull(first->slope, second->slope), hull(first->bend, second->bend)};
+}
+
+}  // namespace
+
+std::optional<CurveBend> ToothSpace::tip_azimuth(int side, const EdgePlace& from, double s_from, const EdgePlace& to,
+                                                 double s_to) const {
+  constexpr int kHalvings = 4;
+  return azimuth_of_edge(*this, side, from, s_from, to, s_to, kHalvings);
 }
 
 }  // namespace toothpath::tooth_space

@@ -405,6 +405,29 @@ TEST(SpiralBevel, LimitsAreThePrintedOnes) {
   EXPECT_NEAR(tooth_space::root_ball_radius_mm(space, ring.s_to), 2.358, 2e-3);
 }
 
+/// Tip edges over the whole face are enclosed, also where the roll hardly moves the place along the tooth.
+TEST(SpiralBevel, TipEdgesAreEnclosed) {
+  constexpr int kStretches = 64;
+  for (const auto& parameters : {nasa_pinion(), nasa_gear(), formate_wheel()}) {
+    const auto gear = made(parameters);
+    const auto& space = gear.space();
+    const auto& ring = space.outline();
+    for (const int side : {1, -1}) {
+      auto from = space.tip_edge(side, ring.s_from).value();
+      for (int n = 1; n <= kStretches; ++n) {
+        const double s_from = ring.s_from + (ring.s_to - ring.s_from) * (n - 1) / kStretches,
+                     s_to = ring.s_from + (ring.s_to - ring.s_from) * n / kStretches;
+        const auto to = space.tip_edge(side, s_to, from).value();
+        const auto bend = space.tip_azimuth(side, from, s_from, to, s_to);
+        ASSERT_TRUE(bend) << side << " " << n;
+        const double slope = (to.azimuth - from.azimuth) / (s_to - s_from);
+        EXPECT_TRUE(bend->slope.low <= slope && slope <= bend->slope.high);
+        from = to;
+      }
+    }
+  }
+}
+
 TEST(SpiralBevel, EveryLimitIsRefusedByItsKey) {
   using P = SpiralBevelParameters;
   const std::tuple<const char*, P (*)(), std::function<void(P&)>> all[] = {
