@@ -14,8 +14,8 @@
 namespace toothpath::line {
 namespace {
 
-constexpr int kMostUpright = 24;   // strips
-constexpr int kMoreStrips = 3;     // than the bend in the middle asks for: the lowest bends more
+constexpr int kMostLeaning = 4;    // strips that are tried of flanks that are no upright ones
+constexpr int kMoreStrips = 2;     // than the bend asks for: poses stand, and the profile bends unevenly
 constexpr double kBodySag = 0.01;  // mm: how far bodies may stand out of the tool where only rapids ask for them
 
 Result<std::vector<FlankTask>> flanks_of(const tooth_space::ToothedPart& part, double allowance_mm) {
@@ -72,30 +72,29 @@ double worst_of(const std::vector<LinePass>& passes) {
 }
 
 /// 1, or of flanks that are straight along the tooth about as many as `left` asks for.
-int least_strips(const std::vector<FlankTask>& flanks, const tool::Profile& tool, const LineOperation& o) {
+int least_strips(const std::vector<FlankTask>& flanks, const LineOperation& o) {
   int least = 1;
   if (o.left_mm)
-    for (const auto& flank : flanks)
-      least = std::max(least, LineFit(flank, *tool.law(), strips_of(flank, 1)[0]).strips_for(*o.left_mm));
+    for (const auto& flank : flanks) least = std::max(least, strips_for(flank, *o.left_mm));
   return least;
 }
 
-Result<std::vector<Choice>> choices_of(const std::vector<FlankTask>& flanks, const tool::Profile& tool,
-                                       const LineOperation& o) {
-  const int least = least_strips(flanks, tool, o);
-  if (!o.strips && least > kMostUpright)
+Result<std::vector<Choice>> choices_of(const std::vector<FlankTask>& flanks, const LineOperation& o) {
+  const int least = least_strips(flanks, o);
+  if (!o.strips && least > kMostStrips)
     return fail(
         "left = {:.3f} um asks for {} strips of flanks that are straight along the tooth: each leaves the sag of its "
         "profile; at most {} are planned; what helps: left = {:.4f} mm, or a finishing with regions = [\"flank\"] by a "
         "ball end",
-        1e3 * *o.left_mm, least, kMostUpright,
-        std::ceil(1e4 * *o.left_mm * std::pow(double(least) / (kMostUpright - 1), 2)) / 1e4);
+        1e3 * *o.left_mm, least, kMostStrips,
+        std::ceil(1e4 * *o.left_mm * std::pow(double(least) / (kMostStrips - 1), 2)) / 1e4);
   std::vector<Rotaries> rotaries{Rotaries::both};
   if (!o.rotaries.empty()) rotaries = o.rotaries;
   else if (o.left_mm) rotaries = {Rotaries::tilt_stands, Rotaries::both};
   std::vector<Choice> out;
   const int from = o.strips.value_or(least);
-  const int to = o.strips || !o.left_mm ? from : std::max(kMostStrips, least + kMoreStrips);
+  const int most = least > 1 ? std::min(least + kMoreStrips, kMostStrips) : kMostLeaning;
+  const int to = o.strips || !o.left_mm ? from : std::max(most, from);
   for (int n = from; n <= to; ++n)
     for (const auto r : rotaries) out.push_back({n, r});
   return out;
@@ -250,7 +249,7 @@ Result<LinePlan> plan_line_milling(const tooth_space::ToothedPart& part, const t
   double least = INFINITY;
   Choice best;
   std::optional<Diagnostic> refused;
-  const auto asked = choices_of(flanks, tool, o);
+  const auto asked = choices_of(flanks, o);
   if (!asked) return asked.error();
   const auto& choices = *asked;
   const WorkShare share{double(choices.size())};  // where none suits all are tried

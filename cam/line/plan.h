@@ -37,7 +37,7 @@ struct LineOperation {
   double speed_rpm = 0;
   double feed_mm_min = 0;         ///< of the contact
   double allowance_mm = 0;        ///< stock that is left on the flank; 0: finishing
-  std::optional<int> strips;      ///< 1 .. 4; none: the least number that meets `left`, more for an upright tool
+  std::optional<int> strips;      ///< 1 .. 24; none: the least number that meets `left`, more for an upright tool
   std::optional<double> left_mm;  ///< largest misfit of a pass; none: whatever one strip with both rotaries leaves
   /// Admitted, tried in this order for each number of strips; empty: the tilt stands where that meets `left`, else
   /// both.

@@ -19,6 +19,7 @@ constexpr double kLastStep = 1e-7;                  // of the module: the step a
 constexpr double kExactEnd = 1e-9;                  // mm: ends of the domain and heights of the ball end
 constexpr double kStandsStill = 1e-8;               // mm: predicted gain at which the best pose is found
 constexpr int kLinearisations = 30;
+constexpr int kSagSteps = 64;        // over the height of a flank
 constexpr double kFirstTrust = 0.1;  // rad of lean in one step; a quarter of it in eps
 
 /// Root of g in [a, b] to `kExactEnd`; ga and gb differ in sign.
@@ -56,6 +57,7 @@ std::optional<FlankPlace> FlankTask::at_depth(double s, double asked) const {
   if (!edge) return {};
   FlankPlace f{{edge->u, edge->v}, {}};
   const double tip_height = space->tip(s);
+  asked *= deep.share(s);
   bool arrived = false;
   for (int k = 0; k < kNewtonSteps; ++k) {
     const auto q = space->at(piece(), f.at.u, f.at.v);
@@ -96,6 +98,30 @@ std::optional<tooth_space::PatchPoint> fillet_line(const FlankTask& t, double s)
   return {};
 }
 
+/// Of the axis that the flank itself wants half way down it.
+bool wants_upright(const FlankTask& t) {
+  const auto place = t.at_depth(0.5 * (t.s_from + t.s_to), 0.5 * t.depth);
+  if (!place) return false;
+  const auto frame = t.frame(place->on);
+  const auto psi = lean(shape_at(frame, place->on), 0.0);
+  return psi && axis_direction<double>(frame, *psi, 0).dot(t.up(place->on.p)) < std::cos(kAlongTheTooth);
+}
+
+/// From the tip down to every depth, in even steps: the integral of sqrt(bend of the profile) over its length. A strip
+/// with the share w of it sags by w^2/8. Empty where the flank has no such places.
+std::vector<double> sags_of(const FlankTask& flank, double s) {
+  std::vector<double> sum{0};
+  const double step = flank.depth / kSagSteps;
+  for (int k = 0; k < kSagSteps; ++k) {
+    const auto place = flank.at_depth(s, (k + 0.5) * step);
+    if (!place) return {};
+    const auto frame = flank.frame(place->on);
+    sum.push_back(sum.back() + std::sqrt(std::abs(shape_at(frame, place->on).pp)) * step * flank.deep.share(s) /
+                                   frame.p.dot(flank.up(place->on.p)));
+  }
+  return sum;
+}
+
 }  // namespace
 
 Result<FlankTask> flank_task(const tooth_space::ToothedPart& part, int zone, int side, double allowance_mm) {
@@ -117,21 +143,39 @@ Result<FlankTask> flank_task(const tooth_space::ToothedPart& part, int zone, int
     return fail("zone {}: flank {:+d} has no fillet line below the tips at {} {:.3f} mm", zone, side, outline.along,
                 outline.sign * middle);
   t.mm_per_u = std::copysign(end->pu.norm(), (side > 0 ? borders.from : borders.to) - t.u_end);
+  t.upright = wants_upright(t);
+  if (const auto depth = t.upright ? tooth_space::flank_depth(*t.space, side) : std::nullopt; depth) t.deep = *depth;
   return t;
 }
 
 std::vector<Strip> strips_of(const FlankTask& flank, int n) {
+  const std::vector<double> sags =
+      flank.upright && n > 1 ? sags_of(flank, 0.5 * (flank.s_from + flank.s_to)) : std::vector<double>{};
+  const auto top = [&](int k) {
+    if (sags.empty() || !(sags.back() > 0) || k == 0) return k * flank.depth / n;
+    const double asked = sags.back() * k / n;
+    const auto after = std::lower_bound(sags.begin() + 1, sags.end() - 1, asked);
+    return flank.depth / kSagSteps * (double(after - sags.begin()) - (*after - asked) / (*after - *(after - 1)));
+  };
   std::vector<Strip> out;
-  const double height = flank.depth / n;
   for (int k = 0; k < n; ++k) {
     Strip s;
-    s.top = k * height;
+    s.top = top(k);
     const bool lowest = k + 1 == n;
+    const double height = (lowest ? flank.depth : top(k + 1)) - s.top;
     if (!lowest) s.bottom = s.top + height;
     s.anchor = s.top + (n > 1 && lowest ? 0.15 : 0.5) * height;
     out.push_back(s);
   }
   return out;
+}
+
+int strips_for(const FlankTask& flank, double left_mm) {
+  double most = 0;
+  if (flank.upright)
+    for (const double s : {flank.s_from, 0.5 * (flank.s_from + flank.s_to), flank.s_to})
+      if (const auto sags = sags_of(flank, s); !sags.empty()) most = std::max(most, sags.back());
+  return std::max(1, int(std::ceil(most / std::sqrt(8 * left_mm))));
 }
 
 std::optional<LineFit::Anchor> LineFit::anchor(double s) const {
@@ -392,15 +436,6 @@ std::optional<StationPose> LineFit::start(double s) const {
   const double bend = shape_at(at->frame, at->place.on).along(std::cos(angles.psi), std::sin(angles.psi));
   pose->about.most_eps = std::max(pose->about.most_eps, std::abs(bend) * pose->gap.t_top);
   return pose;
-}
-
-int LineFit::strips_for(double left_mm) const {
-  const double middle = 0.5 * (flank_.s_from + flank_.s_to);
-  const auto pose = start(middle);
-  const auto at = anchor(middle);
-  if (!pose || !at || pose->about.most_psi > 0) return 1;
-  const double bend = shape_at(at->frame, at->place.on).pp, height = flank_.depth / at->frame.p.dot(pose->up);
-  return std::max(1, int(std::ceil(height * std::sqrt(std::abs(bend) / (8 * left_mm)))));
 }
 
 std::optional<StationPose> LineFit::place(double s, double psi, double eps, double delta, double lift,

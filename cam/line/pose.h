@@ -14,6 +14,7 @@
 
 #include "cam/line/contact.h"
 #include "geometry/base/result.h"
+#include "geometry/tooth_space/flank_depth.h"
 #include "geometry/tooth_space/toothed_part.h"
 
 namespace toothpath::line {
@@ -41,6 +42,10 @@ struct FlankTask {
   double u_end = 0;             ///< at the fillet line
   double mm_per_u = 0;          ///< towards the tip, at the fillet line in the middle of the ring
   double depth = 0;             ///< of the fillet line there
+  /// Is the flank straight along the tooth, or nearly? Its strips are cut by an upright tool (`kAlongTheTooth`), and
+  /// depths are counted in shares of the fillet line's, so that strips taper as the teeth do.
+  bool upright = false;
+  tooth_space::FlankDepth deep;
   double module_mm = 0;
   double allowance_mm = 0;  ///< that the gap leaves on the flank
 
@@ -49,10 +54,10 @@ struct FlankTask {
   /// Unit vector in the meridian plane of p along which h of the chart rises.
   [[nodiscard]] Vec3 up(const Vec3& p) const;
   [[nodiscard]] double along(const Vec3& p) const { return chart().along(p); }
-  /// Below the tip surface.
+  /// Below the tip surface, as strips count it: mm in the middle of the ring.
   [[nodiscard]] double depth_of(const Vec3& p) const { return depth_of(along(p), p); }
   [[nodiscard]] double depth_of(double s, const Vec3& p) const {
-    return space->tip(s) - (chart().sine == 0 ? chart().cosine * p.z() : chart().up(p));
+    return (space->tip(s) - (chart().sine == 0 ? chart().cosine * p.z() : chart().up(p))) / deep.share(s);
   }
   /// Above the fillet line, measured by u.
   [[nodiscard]] double above_fillet(double u) const { return (u - u_end) * mm_per_u; }
@@ -80,9 +85,13 @@ struct Strip {
   double anchor = 0;  ///< depth of the anchors
 };
 
-/// The flank cut into n strips of equal height, from the tip down. Anchors at mid height; that of the lowest of several
-/// lies near its top, because towards the undercut edge the flank ends higher.
+/// The flank cut into n strips, from the tip down: of equal height, or of an upright flank so that its profile sags by
+/// as much in each. Anchors at mid height; that of the lowest of several lies near its top, because towards the
+/// undercut edge the flank ends higher.
 [[nodiscard]] std::vector<Strip> strips_of(const FlankTask& flank, int n);
+/// Strips of which each leaves about `left_mm`, as far as the bend of the profile tells: of an upright flank. 1 of any
+/// other.
+[[nodiscard]] int strips_for(const FlankTask& flank, double left_mm);
 
 /// The gap at one height of the axis, beyond the allowance.
 struct GapNode {
@@ -185,10 +194,6 @@ class LineFit {
                                                 const std::optional<Neighbourhood>& about = {}) const;
   /// eps that fulfils a condition at a station with lean psi, the root nearer to 0. Nothing where none does.
   [[nodiscard]] std::optional<double> eps_under(double s, double psi, double t_m, const AxisCondition& condition) const;
-
-  /// Strips of the whole flank of which each leaves about `left_mm`, as far as the bend of its profile tells: of a
-  /// flank that asks for an upright tool. 1 of any other.
-  [[nodiscard]] int strips_for(double left_mm) const;
 
   /// Height on the axis by which the ball end must be lifted so that its foot lies no farther than `s_most` towards
   /// rising s (sense = 1), or falling s (sense = -1).

@@ -42,7 +42,7 @@ enum class OperationType { roughing, semi_finishing, finishing, line_milling, fi
 /// Which rotaries may move while the side of a mill cuts: "both" or "one" in the job file.
 enum class MovingRotaries : std::uint8_t { both, one };
 
-inline constexpr int kMostStrips = 4;  ///< of a line-milled flank
+inline constexpr int kMostStrips = 24;  ///< of a line-milled flank
 
 struct MillingOperation {
   OperationType type = OperationType::finishing;

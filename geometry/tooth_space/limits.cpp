@@ -41,7 +41,7 @@ double room(const ToothSpace& space, double s, int side, const Vec3& centre, dou
 
 }  // namespace
 
-std::optional<PatchPoint> place_at(const ToothSpace& space, Piece piece, double u, double s) {
+std::optional<double> v_at(const ToothSpace& space, Piece piece, double u, double s) {
   constexpr int kSteps = 20;
   const Chart& chart = space.outline().chart;
   for (int attempt = 0; attempt < ToothSpace::kStarts; ++attempt) {
@@ -52,11 +52,16 @@ std::optional<PatchPoint> place_at(const ToothSpace& space, Piece piece, double 
       const auto q = space.at(piece, u, v);
       if (!q) break;
       const double lack = s - chart.along(q->p);
-      if (std::abs(lack) <= 1e-11 * (1 + std::abs(s))) return q;
+      if (std::abs(lack) <= 1e-11 * (1 + std::abs(s))) return v;
       v += lack / chart.along(q->p, q->pv);
     }
   }
   return {};
+}
+
+std::optional<PatchPoint> place_at(const ToothSpace& space, Piece piece, double u, double s) {
+  const auto v = v_at(space, piece, u, s);
+  return v ? space.at(piece, u, *v) : std::nullopt;
 }
 
 double top_land_mm(const ToothSpace& space, double s) {

@@ -14,7 +14,8 @@ namespace toothpath::tooth_space {
 /// Arc of the top land between two spaces on the tip surface at s; 0 where the flanks do not reach that. mm
 [[nodiscard]] double top_land_mm(const ToothSpace& space, double s);
 
-/// The place of a piece at u and s; nothing where it is not found.
+/// v of a piece at u and s, and the place there; nothing where it is not found.
+[[nodiscard]] std::optional<double> v_at(const ToothSpace& space, Piece piece, double u, double s);
 [[nodiscard]] std::optional<PatchPoint> place_at(const ToothSpace& space, Piece piece, double u, double s);
 
 /// Half way up the flank of a side between fillet and tip, at s; nothing where that is not found.

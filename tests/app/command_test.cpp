@@ -75,7 +75,7 @@ TEST(CommandLine, NumbersAreNumbersOfTheirRange) {
       {{"contact", kQuick}, "--compound", "0.1", "100 um", "0"},
       {{"cutter", pinion}, "--tool", "1", "9999", "0", true},
       {{"machine", "test", "t600s"}, "--tool-length", "1", "5000 mm", "-30"},
-      {{"study", "strategies", kQuick}, "--strips", "1", "4", "0", true},
+      {{"study", "strategies", kQuick}, "--strips", "1", "24", "0", true},
       {{"surface", kQuick}, "--threads", "1", "1024", "0", true},
   };
   for (const Case& c : cases) {

@@ -190,7 +190,7 @@ TEST(StudyStrategies, RefusedJobsAndASignalLeaveWhatStoodThere) {
       << ball.err;
   EXPECT_TRUE(untouched());
   EXPECT_EQ(run_program({"study", "strategies", kSamples + "/bevel_pinion.toml", "--out", out}).exit_code, 3);
-  EXPECT_EQ(run_program({"study", "strategies", job, "--out", out, "--strips", "5"}).exit_code, 2);
+  EXPECT_EQ(run_program({"study", "strategies", job, "--out", out, "--strips", "25"}).exit_code, 2);
   const std::string no_machine = dir / "no_machine.toml";
   write_file(no_machine, replaced(kJob, "xyzac_large", "xyzac_none"));
   EXPECT_NE(run_program({"study", "strategies", no_machine, "--out", out}).exit_code, 0);

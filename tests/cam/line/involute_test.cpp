@@ -10,6 +10,7 @@
 #include "geometry/cylindrical/part.h"
 #include "tests/cam/line/line_cases.h"
 #include "tests/geometry/cylindrical/samples.h"
+#include "tests/geometry/straight_bevel/samples.h"
 #include "tests/support/brute_force_line.h"
 #include "tests/support/random.h"
 
@@ -100,21 +101,23 @@ TEST(Involute, MillsLieAlongTheGenerator) {
 }
 
 // A generator lies flat in the space, so that passes are of an upright tool: one strip of height h leaves k h^2 / 8 of
-// an involute that bends by k along its profile. Against places of the flank, looked at densely.
+// an involute that bends by k along its profile, and all strips of a flank leave alike, though its foot bends more.
+// Against places of the flank, looked at densely.
 TEST(Involute, UprightStripsLeaveTheSagOfTheProfile) {
   for (const auto& c : involute_cases()) {
     const auto f = *line::flank_task(*c.part, 0, 1);
     for (const int strips : {1, 2, 4, 8}) {
-      double worst = 0, sag = 0;
+      double worst = 0, least_of_all = INFINITY, sag = 0;
       for (const auto& strip : line::strips_of(f, strips)) {
         const line::LineFit fit(f, tapered(0.15 * f.module_mm), strip);
         const auto p = fit.best(0.5 * (f.s_from + f.s_to));
         ASSERT_TRUE(p) << c.name;
         EXPECT_LT(p->from_upright(), line::kMostTilt);
         worst = std::max(worst, p->gap.misfit());
+        least_of_all = std::min(least_of_all, p->gap.misfit());
         const auto on = f.at_depth(p->s, 0.5 * (strip.top + strip.bottom.value_or(f.depth)));
         const auto shape = line::shape_at(f.frame(on->on), on->on);
-        const double height = f.depth / strips / f.frame(on->on).p.dot(f.up(on->on.p));
+        const double height = (strip.bottom.value_or(f.depth) - strip.top) / f.frame(on->on).p.dot(f.up(on->on.p));
         sag = std::max(sag, shape.along(std::cos(p->angles.psi), std::sin(p->angles.psi)) * height * height / 8 /
                                 std::pow(std::cos(p->angles.psi), 2));
         double least = INFINITY;
@@ -130,7 +133,40 @@ TEST(Involute, UprightStripsLeaveTheSagOfTheProfile) {
       std::printf("%-12s %d strips: misfit %.2f um, sag of the profile %.2f um\n", c.name, strips, 1e3 * worst,
                   1e3 * sag);
       EXPECT_NEAR(worst, sag, 0.2 * sag) << c.name << " " << strips;
+      if (strips > 1) { EXPECT_GT(least_of_all, 0.7 * worst) << c.name << " " << strips; }
+      EXPECT_EQ(line::strips_for(f, 1.05 * worst), strips) << c.name;
     }
+  }
+}
+
+// Of teeth that taper the strips do, too: at every station each leaves about its share of the profile, which grows with
+// the cone distance, and no strip is left with what the others do not reach.
+TEST(Involute, StripsTaperWithTheTeeth) {
+  const auto gear = straight_bevel::StraightBevelGear::make(khk_pinion()).value();
+  const auto part = straight_bevel::part_of(gear);
+  for (const int side : {1, -1}) {
+    const auto f = *line::flank_task(*part, 0, side);
+    EXPECT_TRUE(f.upright);
+    for (const double s : {f.s_from, f.s_to})
+      EXPECT_NEAR(f.above_fillet(f.at_depth(s, f.depth)->at.u), 0, 1e-6);  // the same share of the depth everywhere
+    const double left_mm = 0.006;
+    const int n = line::strips_for(f, left_mm);
+    EXPECT_EQ(n, 8);
+    double worst = 0;
+    for (const double s : {f.s_from + 4, 0.5 * (f.s_from + f.s_to), f.s_to - 4}) {
+      double least = INFINITY, most = 0;
+      for (const auto& strip : line::strips_of(f, n)) {
+        const auto p = line::LineFit(f, tapered(0.45), strip).best(s);
+        ASSERT_TRUE(p);
+        least = std::min(least, p->gap.misfit());
+        most = std::max(most, p->gap.misfit());
+      }
+      std::printf("cone distance %.2f mm, side %+d: %d strips leave %.2f to %.2f um\n", -s, side, n, 1e3 * least,
+                  1e3 * most);
+      EXPECT_GT(least, 0.4 * most);
+      worst = std::max(worst, most);
+    }
+    EXPECT_LT(worst, 1.15 * left_mm);
   }
 }
 
@@ -139,7 +175,7 @@ TEST(Involute, PassesByBruteForce) {
   auto spur = shifted_spur(), helical = left_helical();
   spur.zones = {{0, -2, 2}};
   helical.zones = {{radians(-18), 4, 7}};
-  for (const auto& [gear, left_mm, strips] : {std::tuple(spur, 0.0305, 4), {spur, 0.009, 8}, {helical, 0.01, 4}}) {
+  for (const auto& [gear, left_mm, strips] : {std::tuple(spur, 0.0305, 4), {spur, 0.009, 7}, {helical, 0.01, 4}}) {
     const auto part = part_of(gear);
     const double m = gear.module_mm;
     line::LineOperation o;
