@@ -154,18 +154,29 @@ std::string unfinished_text(const RunReport& report) {
   return {};
 }
 
+namespace {
+
+/// What qualifies a verdict of yes.
+std::string with(const RunReport& report, std::string yes) {
+  if (!unfinished_text(report).empty()) yes += ", root not finished";
+  if (report.gouge && report.gouge->sampled_patches > 0)
+    yes += fmt::format("; {} of {} patches by sampling", report.gouge->sampled_patches, report.gouge->patches);
+  return yes;
+}
+
+}  // namespace
+
 std::string verdict_text(const RunReport& report) {
-  if (!report.verified) return "not verified";
-  return unfinished_text(report).empty() ? "verified" : "verified, root not finished";
+  return report.verified ? with(report, "verified") : "not verified";
 }
 
 std::string summary_table(const RunReport& report, bool color) {
   std::string out = report.job_name + "\n";
   const std::string left = unfinished_text(report);
-  const char* verdict = !report.verified ? "NO" : !left.empty() ? "yes, root not finished" : "yes";
+  const std::string verdict = report.verified ? with(report, "yes") : "NO";
   const char* paint = !report.verified ? "\033[31m" : !left.empty() ? "\033[33m" : "\033[32m";
   if (report.command != "surface")
-    row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : std::string(verdict));
+    row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : verdict);
   for (const auto& reason : report.reasons) row(out, "  because", reason);
   for (const auto& help : report.would_help) row(out, "  would help", help);
   if (!left.empty()) row(out, "not finished", left);

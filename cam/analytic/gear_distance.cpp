@@ -113,6 +113,11 @@ std::size_t GearDistance::unproven() const {
   for (const auto& ring : impl_->rings) sum += ring->patches->sampled_blocks() + ring->unproven_edges;
   return sum;
 }
+std::size_t GearDistance::bounded() const {
+  std::size_t sum = 0;
+  for (const auto& ring : impl_->rings) sum += ring->patches->blocks() + ring->edges.size();
+  return sum;
+}
 double GearDistance::cell_sag_mm() const { return impl_->sag; }
 const tooth_space::ToothedPart& GearDistance::part() const { return *impl_->part; }
 int GearDistance::zones() const { return int(impl_->rings.size()); }

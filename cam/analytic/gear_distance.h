@@ -81,6 +81,8 @@ class GearDistance {
   [[nodiscard]] const BodyPatches& patches(int zone) const;
   /// Bounds of sags that are measured and not proven: none on nominal gears. docs/proof.md, What a clean result means.
   [[nodiscard]] std::size_t unproven() const;
+  /// Of so many in all.
+  [[nodiscard]] std::size_t bounded() const;
 
   /// Largest distance between a facet of the cells and the exact surface as it showed when the cells were made,
   /// doubled, mm: for searches of tool directions and for the start places of Newton. What is proven rests on

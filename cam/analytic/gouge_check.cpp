@@ -315,6 +315,8 @@ void GougeStream::like(const path::ToolMotion& motion, const proof::LikeMotion& 
 
 proof::GougeResult GougeStream::finish() {
   work();
+  out_.sampled_patches = check_.part_.unproven();
+  out_.patches = check_.part_.bounded();
   return std::move(out_);
 }
 

@@ -54,6 +54,8 @@ void add_result(GougeResult& all, const GougeResult& later) {
   keep_worst(all.worst, ordered);
   all.motions += later.motions;
   all.distance_queries += later.distance_queries;
+  all.sampled_patches = std::max(all.sampled_patches, later.sampled_patches);
+  all.patches = std::max(all.patches, later.patches);
 }
 
 }  // namespace toothpath::proof

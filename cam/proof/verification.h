@@ -37,6 +37,7 @@ struct GougeResult {
   WorstPlace deepest;             ///< the single deepest place, also when all is well
   WorstPlace closest;  ///< of shank or holder, where they keep less than is required: the place of the least gap
   std::size_t motions = 0, distance_queries = 0;
+  std::size_t sampled_patches = 0, patches = 0;  ///< of the part: bends known from samples alone, of so many
 
   /// The least gap may be much larger than the proven one: nothing so near was found.
   [[nodiscard]] bool clearance_at_least() const {

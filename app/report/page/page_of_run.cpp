@@ -140,6 +140,7 @@ ReportPage page_of_run(const GearOnPage& gear, const report::RunReport& r, std::
   page.title = r.job_name;
   page.subtitle = gear.subtitle;
   page.verified = r.verified;
+  page.verdict = report::verdict_text(r);
   page.unfinished = report::unfinished_text(r);
   page.reasons = r.reasons;
   for (const auto& help : r.would_help) page.reasons.push_back("Would help: " + help);

@@ -68,6 +68,7 @@ struct ReportPage {
   std::string title;     ///< job name
   std::string subtitle;  ///< one line: gear, machine, program version; may be empty
   bool verified = false;
+  std::string verdict;               ///< report::verdict_text
   std::string unfinished;            ///< what a verified program leaves out of its ball's reach; empty: nothing
   std::vector<std::string> reasons;  ///< why the program is not verified
   std::vector<std::string> warnings;

@@ -134,7 +134,7 @@ std::string key_figures(const ReportPage& page) {
 }  // namespace
 
 std::string page_header(const ReportPage& page) {
-  const bool part = page.verified && !page.unfinished.empty();
+  const bool part = page.verified && page.verdict != "verified";
   std::string out =
       fmt::format("<header>\n<div class=\"name\"><h1>{}</h1>{}</div>\n<p class=\"verdict {}\">{}</p>\n</header>\n",
                   svg::html_escape(page.title),
@@ -142,9 +142,7 @@ std::string page_header(const ReportPage& page) {
                   part            ? "part"
                   : page.verified ? "good"
                                   : "bad",
-                  part            ? "Verified, root not finished"
-                  : page.verified ? "Verified"
-                                  : "Not verified");
+                  svg::html_escape(svg::sentence(page.verdict)));
   if (!page.unfinished.empty()) out += list("Not finished", {page.unfinished}, "reasons warn");
   if (!page.reasons.empty())
     out += list(page.verified ? "Verdict" : "Why it is not verified", page.reasons,

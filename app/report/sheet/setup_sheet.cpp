@@ -243,11 +243,11 @@ std::string setup_sheet(const job::Job& job, const PartOutline& part, const mach
                   "content='width=device-width'><title>Set-up sheet: "
                   "{}</title><style>{}</style></head><body>\n<h1>Set-up sheet: {}</h1>\n",
                   title, kSetupStyle, title));
-  const std::string left = report::unfinished_text(report);
+  const std::string left = report::unfinished_text(report), verdict = report::verdict_text(report);
   if (report.verified && report.gouge)
     sheet.raw(
         fmt::format("<div class={}>{}: worst gouge {:.2f} um, proven below {:.2f} um, tolerance {:.2f} um.{}</div>\n",
-                    left.empty() ? "yes" : "part", left.empty() ? "Verified" : "Verified, root not finished",
+                    verdict == "verified" ? "yes" : "part", svg::html_escape(svg::sentence(verdict)),
                     std::max(0.0, report.gouge->measured_mm) * 1000, std::max(0.0, report.gouge->bound_mm) * 1000,
                     report.gouge_tolerance_mm * 1000,
                     left.empty() ? "" : fmt::format("<br>Not finished: {}.", svg::html_escape(left))));

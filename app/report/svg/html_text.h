@@ -9,6 +9,8 @@ namespace toothpath::svg {
 /// `&`, `<`, `>`, `"` and `'` as entities; control characters other than tab and newline, hidden ones
 /// (is_hidden), and bytes that are not valid UTF-8, become U+FFFD. For element content and quoted attributes.
 [[nodiscard]] std::string html_escape(std::string_view text);
+/// With a capital at its begin.
+[[nodiscard]] std::string sentence(std::string text);
 
 /// Valid UTF-8: bytes that are not become U+FFFD. For text that goes into JSON.
 [[nodiscard]] std::string valid_utf8(std::string_view text);

@@ -371,6 +371,71 @@ TEST(ToolPathsOnACone, CutCurvedSpacesAndNothingElse) {
   tool_paths_cut_the_space_and_nothing_else(solid_of(narrow_curved(6, 0)), 1.6);
 }
 
+/// A space that bounds no bends of its fillets.
+class WithoutBounds final : public tooth_space::ToothSpace {
+ public:
+  explicit WithoutBounds(const tooth_space::ToothSpace& of) : of_(of) {}
+  [[nodiscard]] const tooth_space::Outline& outline() const override { return of_.outline(); }
+  [[nodiscard]] double tip(double s) const override { return of_.tip(s); }
+  [[nodiscard]] tooth_space::CurveBend tip_bend(double a, double b) const override { return of_.tip_bend(a, b); }
+  [[nodiscard]] tooth_space::Borders borders(Piece p) const override { return of_.borders(p); }
+  [[nodiscard]] tooth_space::Borders active(Piece p) const override { return of_.active(p); }
+  [[nodiscard]] std::optional<tooth_space::PatchPoint> at(Piece p, double u, double v) const override {
+    return of_.at(p, u, v);
+  }
+  [[nodiscard]] std::optional<tooth_space::PatchFoot> foot(Piece p, const Vec3& c, double u, double v) const override {
+    return of_.foot(p, c, u, v);
+  }
+  [[nodiscard]] std::optional<tooth_space::EdgePlace> tip_edge(
+      int side, double s, const std::optional<tooth_space::EdgePlace>& near) const override {
+    return of_.tip_edge(side, s, near);
+  }
+  [[nodiscard]] std::optional<double> start_v(Piece p, double u, double s, double d,
+                                              const std::optional<tooth_space::Near>& near, int k) const override {
+    return of_.start_v(p, u, s, d, near, k);
+  }
+  [[nodiscard]] double longest_step(Piece p, double s) const override { return of_.longest_step(p, s); }
+  [[nodiscard]] std::optional<tooth_space::Jet> enclosure(Piece p, const tooth_space::PatchFrame& f, double a,
+                                                          double b) const override {
+    return is_fillet(p) ? std::nullopt : of_.enclosure(p, f, a, b);
+  }
+
+ private:
+  const tooth_space::ToothSpace& of_;
+};
+class PartWithoutBounds final : public tooth_space::ToothedPart {
+ public:
+  explicit PartWithoutBounds(std::shared_ptr<const tooth_space::ToothedPart> of)
+      : of_(std::move(of)), space_(of_->space(0)) {}
+  [[nodiscard]] int teeth() const override { return of_->teeth(); }
+  [[nodiscard]] int zones() const override { return 1; }
+  [[nodiscard]] const tooth_space::ToothSpace& space(int) const override { return space_; }
+  [[nodiscard]] double module_mm() const override { return of_->module_mm(); }
+  [[nodiscard]] double lowest_root() const override { return of_->lowest_root(); }
+  [[nodiscard]] std::optional<double> groove_floor() const override { return {}; }
+  [[nodiscard]] double blank_top() const override { return of_->blank_top(); }
+  [[nodiscard]] bool in_blank(const Vec3& p) const override { return of_->in_blank(p); }
+
+ private:
+  std::shared_ptr<const tooth_space::ToothedPart> of_;
+  WithoutBounds space_;
+};
+
+/// What only samples bound is counted.
+TEST(PatchesBySampling, AreCounted) {
+  const std::vector<tool::ToolAssembly> tools{ball_mill(1.5, 9, 1.5, 22, 10)};
+  const auto proven = solid_of(narrow_spur()).part;
+  const auto sampled = std::make_shared<PartWithoutBounds>(proven);
+  for (const auto& part : {proven, std::static_pointer_cast<const tooth_space::ToothedPart>(sampled)}) {
+    const analytic::GearDistance distance(part, ball::reach_of(tools));
+    const analytic::GougeCheck check(distance, tools, {});
+    const auto r = check.check({}, {0});
+    EXPECT_EQ(r.sampled_patches > 0, part == sampled);
+    EXPECT_EQ(r.sampled_patches, distance.unproven());
+    EXPECT_GT(r.patches, 4 * r.sampled_patches / 3);
+  }
+}
+
 /// Where the ball is, the finger mill that defines the flanks has been.
 TEST(ToolPathsOnACone, StayWhereTheFingerMillHasBeen) {
   constexpr double kBall = 1.6, kFace = 5;
