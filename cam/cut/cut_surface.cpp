@@ -6,23 +6,18 @@
 #include <cmath>
 #include <memory>
 
+#include "cam/cut/measured_places.h"
 #include "cam/cut/swept_path.h"
 #include "cam/cut/swept_tool.h"
 #include "cam/cut/unreached.h"
-#include "cam/cut/zone_places.h"
 #include "cam/proof/limits.h"
 #include "geometry/base/work_share.h"
 
 namespace toothpath::cut {
 namespace {
 
-// A point counts as reached when a ball that touches it comes no closer than this to anything else, mm.
-constexpr double kReachTolerance = 1e-4;
-constexpr double kSamePlace = 1e-6;  // a foot this near to a place of the grid is that place, mm
 constexpr int kHistogramBins = 40;
-constexpr int kSideSamples = 160;   // across a flank that the side of a mill cuts: its gap is a smooth cubic
-constexpr int kCrestSteps = 10;     // of a golden section: a hundredth of what the samples leave
-constexpr double kSharpEnd = 0.02;  // mm: diameter of the ball that stands for the corner of a flat cutter
+constexpr int kCrestSteps = 10;  // of a golden section: a hundredth of what the samples leave
 
 /// A line across the tooth space: the excess above the allowance from tip to tip.
 struct LinePoint {
@@ -30,15 +25,15 @@ struct LinePoint {
   double sigma = 0, left = 0;
 };
 
-/// Pieces of a space that the fine lines of a zone take as long as.
-constexpr double kLinesWorth = 5;
+/// Pieces of a space that the fine lines of a zone take as long as, and that finding all places does.
+constexpr double kLinesWorth = 5, kPlacesWorth = 20;
 
 class Meter {
  public:
   Meter(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
         const std::vector<path::MillingOperation>& operations, const std::vector<tool::ProofTool>& tools,
-        const CutSurfaceOptions& options)
-      : part_(part), operations_(operations), o_(options) {
+        const CutSurfaceOptions& options, const RegionJudges& judges, const MeasuredPlaces& measured)
+      : part_(part), operations_(operations), o_(options), judges_(judges), measured_(measured) {
     if (o_.cap_mm <= 0) o_.cap_mm = part.part().module_mm();
     for (std::size_t n = 0; n < operations.size(); ++n) {
       std::vector<path::ToolMotion> cuts;
@@ -46,12 +41,6 @@ class Meter {
         if (m.operation == int(n) && m.tooth == 0) cuts.push_back(m);
       const tool::ProofTool& tool = tools[std::size_t(operations[n].tool)];
       paths_.push_back(std::make_unique<Removed>(std::move(cuts), tool, part.part().highest_z()));
-      balls_.push_back(ball_of(tool));
-    }
-    if (operations.empty()) return;
-    for (const path::Region region : path::kRegions) {
-      const auto finisher = operations.back().finishes() ? path::finisher_of(operations, region) : std::nullopt;
-      last_[region] = finisher.value_or(operations.size() - 1);
     }
     for (std::size_t n = 0; n + 1 < operations.size(); ++n)
       if (operations[n].allowance_mm == operations.back().allowance_mm &&
@@ -60,11 +49,10 @@ class Meter {
   }
 
   CutSurface run() {
-    WorkShare share(part_.zones() * (tooth_space::kPieces + kLinesWorth));
-    for (int zone = 0; zone < part_.zones(); ++zone) {
-      const ZonePlaces places(part_, zone);
-      for (int piece = 0; piece < tooth_space::kPieces; ++piece) grid(places, zone, tooth_space::Piece(piece));
-      if (!operations_.empty() && operations_.back().type != path::OperationType::roughing) fine_lines(places, zone);
+    for (std::size_t zone = 0; zone < measured_.zones().size(); ++zone) {
+      const MeasuredPlaces::Zone& places = measured_.zones()[zone];
+      for (const PatchPlaces& patch : places.patches) grid(patch, int(zone));
+      fine_lines(places, int(zone));
     }
     summarise();
     return std::move(out_);
@@ -80,117 +68,82 @@ class Meter {
     }
     return e;
   }
-  /// Radius of the ball that stands for the end of a tool.
-  static double ball_of(const tool::ProofTool& tool) {
-    if (tool.ball_mill) return tool.ball_mill->radius_mm();
-    return std::max(0.5 * kSharpEnd, tool.cutting.empty() ? 0.0 : tool.cutting.front().round);
-  }
   /// The operation that a region is judged by: the one that finishes it, else the last one.
-  [[nodiscard]] const path::MillingOperation& last_in(path::Region region) const { return operations_[last_[region]]; }
-  [[nodiscard]] double ball_in(path::Region region) const { return balls_[last_[region]]; }
-  [[nodiscard]] bool by_side(path::Region region) const {
-    return last_in(region).type == path::OperationType::line_milling;
-  }
-  /// Can the ball end that the place is judged by touch it? The side of a mill is asked for all of its flank.
-  [[nodiscard]] bool reachable(const tooth_space::PatchPoint& s, path::Region region,
-                               double* residual = nullptr) const {
-    if (operations_.empty() || by_side(region)) return true;
-    const double R = ball_in(region);
-    const auto q = part_.nearest(s.p + R * s.n, R + 0.01);
-    // Where the foot is the place itself, the two solvers must agree.
-    if (residual && q.exact && (q.foot - s.p).norm() < kSamePlace) *residual = std::abs(q.distance - R);
-    return q.distance >= R - kReachTolerance;
-  }
+  [[nodiscard]] const path::MillingOperation& last_in(path::Region region) const { return judges_.last_in(region); }
+  [[nodiscard]] double ball_in(path::Region region) const { return judges_.ball_in(region); }
+  [[nodiscard]] bool by_side(path::Region region) const { return judges_.by_side(region); }
 
-  void grid(const ZonePlaces& places, int zone, tooth_space::Piece piece) {
+  void grid(const PatchPlaces& patch, int zone) {
     proof::SurfaceGrid g;
     g.zone = zone;
-    g.patch = piece;
-    const bool flank = is_flank(piece);
-    g.rows = flank ? o_.flank_rows : piece == tooth_space::Piece::root ? o_.root_rows : o_.fillet_rows;
-    g.columns = o_.columns;
-    const std::size_t count = std::size_t(g.rows) * std::size_t(g.columns);
-    WorkShare share(o_.columns);
+    g.patch = patch.piece;
+    g.rows = patch.rows;
+    g.columns = patch.columns;
+    const std::size_t count = patch.at.size();
+    WorkShare share(g.columns);
     g.points.resize(count);
     g.normals.resize(count);
-    g.reachable.resize(count);
+    g.reachable.assign(patch.reachable.begin(), patch.reachable.end());
     std::vector<std::vector<float>> excess(count);
-    std::vector<double> residual(count, 0.0);
-    std::vector<std::optional<tooth_space::SheetPoint>> left(count);
     tbb::parallel_for(0, g.columns, [&](int column) {
-      const double r = places.radius(double(column) / (g.columns - 1));
-      const auto [from, to] = places.range(piece, r);
       for (int row = 0; row < g.rows; ++row) {
         const std::size_t k = std::size_t(row) * std::size_t(g.columns) + std::size_t(column);
-        const auto s = places.at(from + (to - from) * row / (g.rows - 1), r);
-        if (!s) continue;
-        g.points[k] = s->contact.p;
-        g.normals[k] = s->contact.n;
-        excess[k] = excess_of(s->contact.p);
-        g.reachable[k] = reachable(s->contact, path::region_of(piece), &residual[k]);
-        if (!g.reachable[k]) left[k] = s;
+        if (!patch.at[k]) continue;
+        g.points[k] = patch.at[k]->contact.p;
+        g.normals[k] = patch.at[k]->contact.n;
+        excess[k] = excess_of(g.points[k]);
       }
       share.add();
     });
     g.excess_um.assign(paths_.size(), std::vector<float>(count));
     for (std::size_t k = 0; k < count; ++k)
       for (std::size_t n = 0; n < excess[k].size(); ++n) g.excess_um[n][k] = excess[k][n];
-    for (std::size_t k = 0; k < count && !paths_.empty(); ++k)
-      if (g.normals[k] != Vec3::Zero())
-        watch(g.points[k], path::region_of(piece), double(g.excess_um.back()[k]) / 1000);
-    for (std::size_t k = 0; k < count; ++k)
-      if (left[k]) note_unreached(*left[k], zone, double(g.excess_um.back()[k]) / 1000);
-    out_.solve_residual_mm = std::max(out_.solve_residual_mm, *std::max_element(residual.begin(), residual.end()));
+    for (std::size_t k = 0; k < count && !paths_.empty(); ++k) {
+      if (!patch.at[k]) continue;
+      const double left = double(g.excess_um.back()[k]) / 1000;
+      watch(g.points[k], path::region_of(patch.piece), left);
+      if (!patch.reachable[k]) note_unreached(*patch.at[k], zone, left);
+    }
     out_.grids.push_back(std::move(g));
   }
 
   /// Fine lines across the space, the ends of the ring among them: the greatest excess that a ball could have reached,
   /// what it could not reach, and the cusps between neighbouring passes.
-  void fine_lines(const ZonePlaces& places, int zone) {
-    WorkShare share(o_.scallop_lines + 2, kLinesWorth);
-    for (int line = 0; line <= o_.scallop_lines + 1; ++line) {
-      const bool end = line == 0 || line == o_.scallop_lines + 1;
-      const double r = places.radius(end ? double(line > 0) : (line - 0.5) / o_.scallop_lines);
-      const auto points = line_across(places, r);
-      if (!end) count_cusps(places, r, points);
+  void fine_lines(const MeasuredPlaces::Zone& of, int zone) {
+    WorkShare share(double(of.lines.size()), kLinesWorth);
+    for (const LinePlaces& line : of.lines) {
+      const auto points = line_across(line);
+      if (!line.end) count_cusps(of.places, line.r, points);
       for (const auto& q : points) {
         const double x = q.left + operations_.back().allowance_mm;
         const path::Region region = path::region_of(q.piece);
         if (nearly(region, x))
-          if (const auto s = places.at(q.sigma, r)) watch(s->contact.p, region, x);
+          if (const auto s = of.places.at(q.sigma, line.r)) watch(s->contact.p, region, x);
         if (x <= std::min(line_max_[region], unreached_limit(region))) continue;
-        const auto s = places.at(q.sigma, r);
+        const auto s = of.places.at(q.sigma, line.r);
         if (!s) continue;
-        if (reachable(s->contact, region)) line_max_[region] = std::max(line_max_[region], x);
+        if (measured_.reachable(s->contact, region)) line_max_[region] = std::max(line_max_[region], x);
         else note_unreached(*s, zone, x);
       }
       share.add();
     }
   }
 
-  [[nodiscard]] std::vector<LinePoint> line_across(const ZonePlaces& places, double r) {
-    std::vector<LinePoint> points;
-    for (int piece = 0; piece < tooth_space::kPieces; ++piece) {
-      const path::Region region = path::region_of(tooth_space::Piece(piece));
-      const double step = std::sqrt(8 * ball_in(region) * last_in(region).scallop_in(region)) / 24;
-      const auto [from, to] = places.range(tooth_space::Piece(piece), r);
-      const auto a = places.at(from, r), b = places.at(to, r);
-      if (!a || !b) continue;
-      const double length = (b->contact.p - a->contact.p).norm();
-      const int n = by_side(region) ? kSideSamples : step > 0 ? std::max(16, int(1.2 * length / step)) : 16;
-      line_step_ = std::max(line_step_, length / n);
-      // Where two pieces join one point is enough.
-      for (int k = points.empty() ? 0 : 1; k <= n; ++k)
-        points.push_back({tooth_space::Piece(piece), from + (to - from) * k / n, 0});
-    }
-    tbb::parallel_for(std::size_t(0), points.size(),
-                      [&](std::size_t k) { points[k].left = left_at(places, points[k].sigma, r); });
+  [[nodiscard]] std::vector<LinePoint> line_across(const LinePlaces& line) const {
+    std::vector<LinePoint> points(line.places.size());
+    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
+      const LinePlaces::Place& place = line.places[k];
+      points[k] = {place.piece, place.sigma, left_on(place.p)};
+    });
     return points;
   }
   /// Material of the last operation above its allowance; 0 where there is no surface.
   [[nodiscard]] double left_at(const ZonePlaces& places, double sigma, double r) const {
     const auto s = places.at(sigma, r);
-    return s ? paths_.back()->excess(s->contact.p, o_.cap_mm) - operations_.back().allowance_mm : 0;
+    return left_on(s ? std::optional(s->contact.p) : std::nullopt);
+  }
+  [[nodiscard]] double left_on(const std::optional<Vec3>& p) const {
+    return p ? paths_.back()->excess(*p, o_.cap_mm) - operations_.back().allowance_mm : 0;
   }
 
   void count_cusps(const ZonePlaces& places, double r, const std::vector<LinePoint>& line) {
@@ -210,7 +163,7 @@ class Meter {
       if (top->left - valley < 0.02 * wanted) continue;  // two samples of one valley
       const auto [sigma, height] = crest(places, r, *(top - 1), *(top + 1));
       const auto s = places.at(sigma, r);
-      if (!s || !reachable(s->contact, region)) continue;  // a corner that was left
+      if (!s || !measured_.reachable(s->contact, region)) continue;  // a corner that was left
       line_max_[region] = std::max(line_max_[region], height + operations_.back().allowance_mm);
       watch_crest(places, r, *(top - 1), *(top + 1), region, height + operations_.back().allowance_mm);
       const bool on_flank = is_flank(a.piece) && a.piece == b.piece;
@@ -299,6 +252,7 @@ class Meter {
   }
 
   void summarise() {
+    out_.solve_residual_mm = measured_.solve_residual_mm();
     for (std::size_t n = 0; n < paths_.size(); ++n) {
       proof::ExcessResult r;
       r.operation = int(n);
@@ -346,7 +300,7 @@ class Meter {
       // Along a line the excess rises no faster than the slope at a cusp's foot, sqrt(2 h / R).
       const auto& op = last_in(region);
       const double rise = by_side(region) ? 0 : std::sqrt(2 * std::max(op.scallop_in(region), 0.0) / ball_in(region));
-      slack_ = std::max(slack_, 0.5 * line_step_ * rise + op.chord_tolerance_mm);
+      slack_ = std::max(slack_, 0.5 * measured_.line_step_mm() * rise + op.chord_tolerance_mm);
     }
     out_.finished.bound_mm = out_.finished.max_mm + slack_;
     for (const path::Region region : path::kRegions)
@@ -411,14 +365,14 @@ class Meter {
   const std::vector<path::MillingOperation>& operations_;
   CutSurfaceOptions o_;
   std::vector<std::unique_ptr<Removed>> paths_;
-  std::vector<double> balls_;         ///< radius of the ball end of every operation's tool
-  path::ByRegion<std::size_t> last_;  ///< operation that a region is judged by
+  const RegionJudges& judges_;
+  const MeasuredPlaces& measured_;
   struct Cusp {
     double height = 0, wanted = 0;
   };
   std::vector<Cusp> cusps_;
   path::ByRegion<double> line_max_;
-  double line_step_ = 0, fillet_cusp_ = 0, slack_ = 0;
+  double fillet_cusp_ = 0, slack_ = 0;
   CutSurface out_;
 };
 
@@ -433,7 +387,25 @@ CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::ve
 CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
                                const std::vector<path::MillingOperation>& operations,
                                const std::vector<tool::ProofTool>& tools, const CutSurfaceOptions& options) {
-  return Meter(part, motions, operations, tools, options).run();
+  return SurfaceMeter(part, operations, tools, options).measure(motions, options.watch_mm);
+}
+
+SurfaceMeter::SurfaceMeter(const analytic::GearDistance& part, const std::vector<path::MillingOperation>& operations,
+                           const std::vector<tool::ProofTool>& tools, const CutSurfaceOptions& options)
+    : part_(part), operations_(operations), tools_(tools), options_(options) {}
+
+SurfaceMeter::~SurfaceMeter() = default;
+
+CutSurface SurfaceMeter::measure(const std::vector<path::ToolMotion>& motions, double watch_mm) {
+  WorkShare share(part_.zones() * (tooth_space::kPieces + kLinesWorth) + (places_ ? 0 : kPlacesWorth));
+  if (!places_) {
+    const WorkShare finding(1, kPlacesWorth);
+    judges_ = std::make_unique<RegionJudges>(operations_, tools_);
+    places_ = std::make_unique<MeasuredPlaces>(part_, *judges_, options_);
+  }
+  CutSurfaceOptions options = options_;
+  options.watch_mm = watch_mm;
+  return Meter(part_, motions, operations_, tools_, options, *judges_, *places_).run();
 }
 
 }  // namespace toothpath::cut

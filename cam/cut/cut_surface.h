@@ -2,6 +2,7 @@
 // computed from the path as it was read back. Exact in double on candidates of a spatial index.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "cam/analytic/gear_distance.h"
@@ -34,6 +35,30 @@ struct CutSurface {
       0;  ///< greatest difference between a radius and the distance from a centre that far above the grid
   std::vector<LeftPlace> watched;  ///< places on which no more stands than may, but nearly as much
   proof::ScallopResult scallop;    ///< cusps of the last operation; requested 0: it has none
+};
+
+class MeasuredPlaces;
+class RegionJudges;
+
+/// Measures what one program after another, or one tooth after another, leaves of a job. Where it measures, and what
+/// the balls of the job reach there, is found at the first measurement.
+class SurfaceMeter {
+ public:
+  /// Holds references to all but `options`. The tools as in `measure_cut_surface`.
+  SurfaceMeter(const analytic::GearDistance& part, const std::vector<path::MillingOperation>& operations,
+               const std::vector<tool::ProofTool>& tools, const CutSurfaceOptions& options);
+  ~SurfaceMeter();
+
+  /// What `measure_cut_surface` says. @param watch_mm  instead of that of the options
+  [[nodiscard]] CutSurface measure(const std::vector<path::ToolMotion>& motions, double watch_mm);
+
+ private:
+  const analytic::GearDistance& part_;
+  const std::vector<path::MillingOperation>& operations_;
+  const std::vector<tool::ProofTool>& tools_;
+  CutSurfaceOptions options_;
+  std::unique_ptr<RegionJudges> judges_;
+  std::unique_ptr<MeasuredPlaces> places_;  // none before the first measurement
 };
 
 /// `motions`: those of tooth 0 are used. Excess at a point p: the least, over all moves so far, of (distance from p to

@@ -231,8 +231,8 @@ MilledCheck::MilledCheck(const job::Job& job, const machines::Machine& machine, 
       part_(part),
       body_(body),
       check_(check),
-      grid_(grid),
-      tools_(tool::proof_tools(job.tools)) {}
+      tools_(tool::proof_tools(job.tools)),
+      meter_(part, job.operations, tools_, grid) {}
 
 int MilledCheck::teeth() const { return part_.part().teeth(); }
 
@@ -346,8 +346,7 @@ void MilledCheck::judge_unlike(process::ProgramProof& program, const OtherTeeth&
   for (const auto& [tooth, why] : unlike) teeth.insert(tooth);
   std::size_t refused = 0;
   for (auto& [tooth, cuts] : cuts_of(program, teeth)) {
-    cut::CutSurface own =
-        cut::measure_cut_surface(part_, in_space_0(std::move(cuts), this->teeth()), job_.operations, job_.tools, grid_);
+    cut::CutSurface own = meter_.measure(in_space_0(std::move(cuts), this->teeth()), 0);
     std::vector<std::string> reasons;
     judge_surface(own, job_, limits_, reasons);
     judge_unreached(own.unreached, job_.verify.unreached_mm, reasons);
@@ -423,11 +422,8 @@ void MilledCheck::judge(process::ProgramProof& program, app::StageClock& clock) 
   std::vector<int> tool_of_operation;
   for (const auto& operation : job_.operations) tool_of_operation.push_back(operation.tool);
   OtherTeeth others(program, *this);
-  cut::CutSurfaceOptions grid = grid_;
-  grid.watch_mm = others.watch_mm();
   const std::vector<path::ToolMotion> firsts = first_in_space_0(program.motions, teeth());
-  surface = clock.run("cut surface",
-                      [&] { return cut::measure_cut_surface(part_, firsts, job_.operations, job_.tools, grid); });
+  surface = clock.run("cut surface", [&] { return meter_.measure(firsts, others.watch_mm()); });
   if (program.others_text) clock.run("engagement", [&] { judge_load(firsts, program.reasons); });
   others.measured(surface);
   program.gouge = clock.run("proof of the program", [&] {

@@ -50,8 +50,8 @@ class MilledCheck final : public process::GearCheck {
   const analytic::GearDistance& part_;
   const GearBody& body_;
   const analytic::GougeCheck& check_;
-  cut::CutSurfaceOptions grid_;
   std::vector<tool::ProofTool> tools_;  // of the job
+  cut::SurfaceMeter meter_;
 };
 
 }  // namespace toothpath::milled
