@@ -79,7 +79,7 @@ class BodyTree::Search {
     const auto enter = [&](std::uint32_t index) -> Open {
       const Node& node = zone.nodes[index];
       if (body.beyond(node.centre, best_ + node.radius + kTreeRoundOff)) return {index, INFINITY};
-      return {index, body.slope(node.centre).distance - node.radius};
+      return {index, body.distance(node.centre) - node.radius};
     };
     open[count++] = enter(0);
     while (count > 0 && !ended()) {
@@ -112,7 +112,7 @@ class BodyTree::Search {
   void facet(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& centre, double size,
              const tool::PlacedFrustum& body, int depth) {
     if (ended() || body.beyond(centre, best_ + size + kTreeRoundOff)) return;
-    const auto [distance, slope] = body.slope(centre);
+    const double distance = body.distance(centre);
     if (distance - size > best_ + kTreeRoundOff) return;
     if (distance <= 0 || size <= resolution_ || depth == 0) {
       best_ = std::min(best_, distance <= 0 ? -resolution_ : distance - size);
@@ -122,6 +122,7 @@ class BodyTree::Search {
     // reaches farther down.
     double last = size;
     for (int k = depth; k > 0 && last > resolution_; --k) last *= 0.5;
+    const Vec3 slope = body.slope(centre).gradient;
     const double lowest = distance + std::min({slope.dot(a - centre), slope.dot(b - centre), slope.dot(c - centre)});
     if (lowest - last > best_ + kTreeRoundOff) return;
     const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);

@@ -10,7 +10,7 @@ namespace {
 struct HalfPlane {
   double distance = 0, d_rho = 0, d_h = 0;
 };
-HalfPlane half_plane(double rho, double h, const Frustum& f) {
+inline HalfPlane half_plane(double rho, double h, const Frustum& f) {
   const double dr = f.radius_to - f.radius_from, dh = f.to - f.from;
   const double side = (rho - f.radius_from) * dh - (h - f.from) * dr;  // times the length of the generator
   const double below = f.from - h, above = h - f.to;
@@ -52,6 +52,12 @@ FrustumSlope frustum_slope(const Vec3& x, const Frustum& f) {
 
 PlacedFrustum::PlacedFrustum(const Frustum& body, const Vec3& tip, const Vec3& axis)
     : body_(body), tip_(tip), axis_(axis), widest_(std::max(body.radius_from, body.radius_to)) {}
+
+double PlacedFrustum::distance(const Vec3& point) const {
+  const Vec3 d = point - tip_;
+  const double h = d.dot(axis_);
+  return half_plane((d - h * axis_).norm(), h, body_).distance;
+}
 
 FrustumSlope PlacedFrustum::slope(const Vec3& point) const {
   const Vec3 d = point - tip_;

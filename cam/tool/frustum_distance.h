@@ -30,7 +30,9 @@ class PlacedFrustum {
     const double reach = widest_ + distance;
     return along > distance || (d - h * axis_).squaredNorm() > (reach > 0 ? reach * reach : 0);
   }
-  /// Signed distance and its slope, as `frustum_slope`, in the frame of the points.
+  /// Signed distance, as `frustum_distance`.
+  [[nodiscard]] double distance(const Vec3& point) const;
+  /// The same with its slope, as `frustum_slope`, in the frame of the points.
   [[nodiscard]] FrustumSlope slope(const Vec3& point) const;
 
  private:
