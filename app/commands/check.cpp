@@ -24,31 +24,32 @@
 #include "postproc/timing/model_text.h"
 
 namespace toothpath::commands {
-namespace {
-
-constexpr const char* kSheet = "setup_check.html";  // not that of `run`, which knows more of its program
 
 /// What one check has read and found so far. Steps fill it in order.
-struct Check {
-  const CheckRequest& request;
+struct ProgramCheck {
+  const CheckRequest request;
   app::Progress progress;
   app::StageClock clock{progress};
   job::Job job;
   proof::ProofLimits limits;
   flow::GearToCut gear;
   machines::Machine machine;
-  std::string text;  ///< of the program
+  std::string text, file;  ///< the program
   std::optional<process::Scene> scene;
   std::unique_ptr<process::GearMilling> milling;
   std::optional<process::ProgramProof> proof;
   page::SceneStates states;  ///< of the picture
   report::RunReport report;
 
-  explicit Check(const CheckRequest& r) : request(r), progress(r.quiet) {}
+  explicit ProgramCheck(const CheckRequest& r) : request(r), progress(r.quiet), file(r.program_file) {}
 };
 
-/// Job, gear, machine, program and meshes; the first of them that is refused ends it.
-std::vector<Diagnostic> read_inputs(Check& check) {
+namespace {
+
+constexpr const char* kSheet = "setup_check.html";  // not that of `run`, which knows more of its program
+
+/// Job, gear, machine, the program that is asked for and meshes; the first of them that is refused ends it.
+std::vector<Diagnostic> read_inputs(ProgramCheck& check) {
   const CheckRequest& request = check.request;
   auto read = check.clock.run("job", [&] { return job::read_job_file(request.job_file); });
   if (auto* errors = read.refused()) return std::move(*errors);
@@ -62,9 +63,11 @@ std::vector<Diagnostic> read_inputs(Check& check) {
   check.machine = std::move(loaded).value();
   if (!check.job.setup)
     return {fail_at(check.job.where("setup"), "the job lacks a [setup]: where the gear stands is not known")};
-  auto text = process::read_program_file(request.program_file);
-  if (!text) return {text.error()};
-  check.text = std::move(text.value());
+  if (!request.program_file.empty()) {
+    auto text = process::read_program_file(request.program_file);
+    if (!text) return {text.error()};
+    check.text = std::move(text.value());
+  }
   if (!process::wants_scene(request)) return {};
   auto meshes = check.clock.run("stock and fixture meshes",
                                 [&] { return process::load_scene(request, check.job.setup->clocking_rad); });
@@ -79,13 +82,13 @@ std::vector<Diagnostic> read_inputs(Check& check) {
 }
 
 /// What stands around the gear joins the proof.
-Status judge_scene(Check& check) {
+Status judge_scene(ProgramCheck& check) {
   if (!check.scene || !check.proof->swept) return Ok{};
   auto verdicts = check.clock.run("stock and fixture", [&]() -> Result<std::vector<report::SceneVerdict>> {
     const auto around = check.gear.process->scene(check.limits.clearance_mm);
     if (!around) return around.error();
-    return process::check_scene(*check.scene, check.text, check.request.program_file, check.job, check.machine,
-                                check.proof->read, *around);
+    return process::check_scene(*check.scene, check.text, check.file, check.job, check.machine, check.proof->read,
+                                *around);
   });
   if (!verdicts) return verdicts.error();
   process::add_scene(*verdicts, check.proof->reasons, check.proof->gouge, check.report);
@@ -112,15 +115,15 @@ std::string part_of_header(std::string_view text) {
 
 /// Everything that is asked of the program. Errors: what the reader refuses; a program that is read but not safe is
 /// none.
-Status prove(Check& check) {
-  check.milling = check.gear.process->milling(check.machine, check.limits, {}, check.clock);
+Status prove(ProgramCheck& check) {
+  if (!check.milling) check.milling = check.gear.process->milling(check.machine, check.limits, {}, check.clock);
   auto bodies =
       flow::bodies_in_machine(check.job, check.machine, *check.gear.process, check.scene ? &*check.scene : nullptr);
   if (!bodies) return bodies.error();
   bodies::MovesJudge moves = flow::judge_of(check.machine, std::move(*bodies), check.job, check.limits.clearance_mm);
   page::StateRecorder states = flow::recorder_of(check.job, check.gear.process->part().teeth);
   auto proof = process::prove_program(
-      {check.text, check.request.program_file, check.job, check.machine, &moves,
+      {check.text, check.file, check.job, check.machine, &moves,
        [&](const readback::ExecutedMove& move) { states.add(move); },
        flow::graphics_blank(*check.gear.process, *check.job.setup), !check.request.stock_files.empty()},
       {}, check.milling->check(), check.clock);
@@ -144,13 +147,13 @@ Status prove(Check& check) {
     report.sections.push_back(std::move(section));
   report.sections.insert(report.sections.begin(), sections::conditions(check.job, check.machine, report));
   report.verified = report.reasons.empty();
-  report.program_file = check.request.program_file;
+  report.program_file = check.file;
   report.program_sha256 = sha256_hex(check.text);
   report.program_bytes = check.text.size();
   return Ok{};
 }
 
-Status write_results(Check& check, app::OutputDir& output, std::string& json) {
+Status write_results(ProgramCheck& check, app::OutputDir& output, std::string& json) {
   report::RunReport& report = check.report;
   const process::ProgramProof& proof = *check.proof;
   const auto vtp = report::deviation_vtp(proof.surface);
@@ -184,7 +187,7 @@ CommandOutcome check_program(const CheckRequest& request) {
     inputs.insert(inputs.end(), more->begin(), more->end());
   auto output = app::OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp", kSheet}, inputs);
   if (!output) return failed(output.error());
-  Check check(request);
+  ProgramCheck check(request);
   if (auto errors = read_inputs(check); !errors.empty()) {
     check.progress.clear();
     return failed(std::move(errors));
@@ -203,6 +206,19 @@ CommandOutcome check_program(const CheckRequest& request) {
   check.report.directory = output->path();
   outcome.summary = report::summary_table(check.report, request.color) + process::table_of_worst(check.proof->gouge);
   return outcome;
+}
+
+ProgramChecker::ProgramChecker(const CheckRequest& request) : check_(std::make_unique<ProgramCheck>(request)) {}
+
+ProgramChecker::~ProgramChecker() = default;
+
+std::vector<Diagnostic> ProgramChecker::read() { return read_inputs(*check_); }
+
+Result<report::RunReport> ProgramChecker::prove(std::string text, const std::string& file) {
+  check_->text = std::move(text);
+  check_->file = file;
+  if (auto proven = commands::prove(*check_); !proven) return proven.error();
+  return std::move(check_->report);
 }
 
 void add_check(Commands& commands) {

@@ -85,7 +85,7 @@ class GearMilling {
   /// roughs.
   [[nodiscard]] virtual rest::Excess roughed() const = 0;
 
-  /// What this gear adds to the proof of a program.
+  /// What this gear adds to the proof of the next program; what it has met of another one is forgotten.
   [[nodiscard]] virtual GearCheck& check() = 0;
   /// Every source of deviation of the program that check() judged last, predicted by the plan and measured.
   [[nodiscard]] virtual std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program,

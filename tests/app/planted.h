@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <regex>
 #include <sstream>
@@ -120,9 +121,23 @@ class PlantedProgram {
     std::string kind;  ///< "harmless", "refused", or what it is not verified for
     std::string text;
     double gouge_um = 0;
+    bool operator==(const Found&) const = default;
   };
-  /// What `check` says of a text.
+  /// What `check` says of a text; the job is read once for all of them.
   [[nodiscard]] Found check(const Lines& lines) const {
+    if (!checker_) {
+      commands::CheckRequest request;
+      request.job_file = dir_ / "job.toml";
+      request.quiet = true;
+      checker_ = std::make_unique<commands::ProgramChecker>(request);
+      const auto errors = checker_->read();
+      EXPECT_TRUE(errors.empty()) << to_text(errors);
+    }
+    const auto report = checker_->prove(joined(lines), dir_ / "edited.nc");
+    return report ? found_in(report::report_json(*report)) : Found{"refused", to_text({report.error()}), 0};
+  }
+  /// The same by the command, in a whole run of its own.
+  [[nodiscard]] Found check_alone(const Lines& lines) const {
     write_file(dir_ / "edited.nc", joined(lines));
     commands::CheckRequest request;
     request.job_file = dir_ / "job.toml";
@@ -130,9 +145,16 @@ class PlantedProgram {
     request.out_dir = dir_ / "check";
     request.quiet = true;
     const auto outcome = commands::check_program(request);
+    return outcome.report_json.empty() ? Found{"refused", to_text(outcome.errors), 0} : found_in(outcome.report_json);
+  }
+
+  [[nodiscard]] const Lines& lines() const { return lines_; }
+  [[nodiscard]] double gouge_um() const { return report_["gouge_um"]["measured"].get<double>(); }
+
+ protected:
+  [[nodiscard]] static Found found_in(const std::string& report_json) {
+    const auto report = nlohmann::json::parse(report_json);
     Found found;
-    if (outcome.report_json.empty()) return {"refused", to_text(outcome.errors), 0};
-    const auto report = nlohmann::json::parse(outcome.report_json);
     if (const auto& gouge = report["gouge_um"]["measured"]; !gouge.is_null()) found.gouge_um = gouge.get<double>();
     const auto is = [&](const std::string& reason, const char* word) { return reason.find(word) != std::string::npos; };
     for (const auto& entry : report["reasons"]) {
@@ -159,11 +181,6 @@ class PlantedProgram {
     }
     return found;
   }
-
-  [[nodiscard]] const Lines& lines() const { return lines_; }
-  [[nodiscard]] double gouge_um() const { return report_["gouge_um"]["measured"].get<double>(); }
-
- protected:
   [[nodiscard]] JudgedPath walk(const Lines& lines) const {
     return {
         joined(lines), file_text(dir_ / "machine.toml"), {origin_ + Vec3(0, 0, 120), false, {origin_, {0, kLength}}}};
@@ -174,6 +191,7 @@ class PlantedProgram {
   Vec3 origin_;
   nlohmann::json report_;
   Lines lines_;
+  mutable std::unique_ptr<commands::ProgramChecker> checker_;
 };
 
 /// One of whose cuts can be moved.

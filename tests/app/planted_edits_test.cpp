@@ -18,7 +18,7 @@ TEST_P(PlantedEdits, CutsThatAreMoved) {
   Random random(77);
   const Planted p(GetParam(), random);
   ASSERT_TRUE(p.made());
-  const auto as_made = p.check(p.lines());
+  const auto as_made = p.check_alone(p.lines());
   ASSERT_EQ(as_made.kind, "harmless") << as_made.text;
   EXPECT_NEAR(as_made.gouge_um, p.gouge_um(), 1e-6);
   for (const double um : {2.0, 5.0, 20.0, -2.0, -5.0, -20.0}) {

@@ -87,7 +87,10 @@ class FingerMilling final : public process::GearMilling {
     }
     return rest::excess_of(std::move(removed));
   }
-  [[nodiscard]] process::GearCheck& check() override { return check_; }
+  [[nodiscard]] process::GearCheck& check() override {
+    check_.forget();
+    return check_;
+  }
   [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program,
                                                        const process::ProgramProof& proof,
                                                        double blend_mm) const override {

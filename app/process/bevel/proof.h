@@ -38,6 +38,8 @@ class BevelGearCheck final : public process::GearCheck {
   void meet(const readback::OperationTrace& trace, std::span<const path::ToolMotion> motions,
             const readback::NcControl& control) override;
   void judge(process::ProgramProof& program, app::StageClock& clock) override;
+  /// What was met of a program that is not judged.
+  void forget() { moving_ = {}; }
 
   finger::FingerCheckResult result;  ///< of the program judged last, for the ledger; its grids stand in the proof
 
