@@ -1,8 +1,14 @@
 #include "geometry/bevel_gear/surface.h"
 
 #include <Eigen/Dense>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cstdint>
 
 namespace toothpath::bevel_gear {
+
+namespace {
+constexpr double kOneBranch = 1e-3;  // rad: a place is closed in by halves so far
+}  // namespace
 
 BevelCurvature bevel_curvature(const BevelWall<double>& w, double beta, double p) {
   const auto& t = w.trace;
@@ -94,12 +100,21 @@ std::optional<double> bevel_beta_at(const BevelWall<double>& w, double ell, doub
     for (lo = -0.5; lo > -1e4 && w.generatrix(lo, p)[0] < ell;) lo *= 2;
   // Just before the end of the trace ell may turn back (convex wall, tip): the bracket starts on the falling branch.
   for (int k = 1; k <= 400 && w.generatrix(lo, p)[0] < ell; ++k) lo = 0.2 * k / 400;
-  if (w.generatrix(lo, p)[0] < ell || w.generatrix(hi, p)[0] > ell) return std::nullopt;
-  for (int k = 0; k < 80; ++k) {
-    const double mid = 0.5 * (lo + hi);
-    (w.generatrix(mid, p)[0] > ell ? lo : hi) = mid;
+  const auto beyond = [&](double beta) { return w.generatrix(beta, p)[0] - ell; };
+  double at_lo = beyond(lo), at_hi = beyond(hi);
+  if (!(at_lo >= 0 && at_hi <= 0)) return std::nullopt;
+  // Where ell turns back there may be three places: halves lead to the branch of the rest of the wall.
+  while (std::abs(hi - lo) > kOneBranch) {
+    const double mid = 0.5 * (lo + hi), at_mid = beyond(mid);
+    (at_mid > 0 ? lo : hi) = mid, (at_mid > 0 ? at_lo : at_hi) = at_mid;
   }
-  return 0.5 * (lo + hi);
+  if (lo == hi || at_lo == 0) return lo;
+  std::uintmax_t rounds = 100;
+  const bool rising = lo > hi;
+  const auto between =
+      boost::math::tools::toms748_solve(beyond, rising ? hi : lo, rising ? lo : hi, rising ? at_hi : at_lo,
+                                        rising ? at_lo : at_hi, boost::math::tools::eps_tolerance<double>(), rounds);
+  return 0.5 * (between.first + between.second);
 }
 
 namespace {

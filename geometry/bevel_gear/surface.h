@@ -113,7 +113,7 @@ template <typename S>
 [[nodiscard]] std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& wall, double ell, double height,
                                                         const BevelInverse& start);
 
-/// Spiral angle at which profile point p touches the wall at cone distance ell; bisection, ell falls with beta. Empty
+/// Spiral angle at which profile point p touches the wall at cone distance ell, to rounding; ell falls with beta. Empty
 /// outside the trace.
 [[nodiscard]] std::optional<double> bevel_beta_at(const BevelWall<double>& wall, double ell, double p);
 

@@ -247,6 +247,27 @@ TEST(BevelExtremes, SmallSpiralAnglesHaveTheirWholeWalls) {
   }
 }
 
+// At the tip of the convex wall the cone distance turns back near the end of a trace of small spiral angle: three
+// places have the same. The last one is found, on the branch of the rest of the wall.
+TEST(BevelExtremes, WhereTheConeDistanceTurnsBackTheBranchOfTheWallIsFound) {
+  auto p = w1();
+  p.outer_spiral_angle_rad = radians(3);
+  const bevel_gear::BevelGear g = made(p, pinion_mill());
+  const auto& wall = g.halves()[0].wall(1);
+  ASSERT_LT(wall.eps(), 0);
+  const double ell = g.halves()[0].ell_to, tip = wall.cutter.p_A;
+  const auto beyond = [&](double beta) { return wall.generatrix(beta, tip)[0] - ell; };
+  std::vector<double> turns;
+  for (int k = 1; k < 400; ++k)
+    if ((beyond(0.001 * k) > 0) != (beyond(0.001 * (k - 1)) > 0)) turns.push_back(0.001 * k);
+  ASSERT_EQ(turns.size(), 3u);
+  const auto found = bevel_gear::bevel_beta_at(wall, ell, tip);
+  ASSERT_TRUE(found);
+  double low = turns[2] - 0.001, high = turns[2];
+  for (int k = 0; k < 60; ++k) (beyond((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
+  EXPECT_NEAR(*found, low, 1e-12);
+}
+
 TEST(BevelExtremes, AlmostACrownWheelAndAlmostACylinder) {
   const bevel_gear::BevelGear flat = gear_of(design(30, 0, 4, 35, 0.25, 1, 90)),
                               nearly = gear_of(design(30, 0, 4, 35, 0.25, 1, 89.9999));
