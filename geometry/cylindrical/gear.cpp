@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/refusals.h"
 #include "geometry/tooth_space/limits.h"
 
 namespace toothpath::cylindrical {
@@ -16,15 +17,12 @@ constexpr double kSameRadius = 1e-9;      // of the reference radius, between tw
 constexpr double kGrooveBelowRoot = 0.5;  // modules
 
 /// Gathers what is wrong with a gear.
-class Inspection {
+class Inspection : public Refusals {
  public:
   explicit Inspection(const CylindricalParameters& gear) : gear_(gear) {}
 
-  std::vector<Refusal> refusals;
-
   void numbers() {
-    if (gear_.teeth < kLeastTeeth || gear_.teeth > kMostTeeth)
-      refuse("teeth", "teeth = {} is outside [{}, {}]", gear_.teeth, kLeastTeeth, kMostTeeth);
+    integer_range("teeth", gear_.teeth, kLeastTeeth, kMostTeeth);
     range("module", gear_.module_mm, 0.05, 100, " mm");
     range("pressure_angle", degrees(gear_.pressure_angle_rad), 5, 45, " deg");
     range("profile_shift", gear_.profile_shift, -5, 5, "");
@@ -33,28 +31,23 @@ class Inspection {
     range("root_radius_coefficient", gear_.root_radius_coefficient, 0, 1, "");
     range("thickness_allowance", gear_.thickness_allowance_mm, -gear_.module_mm, 0, " mm");
     range("least_land", gear_.least_land, 0, 2, "");
-    if (gear_.tip_diameter_mm && !(*gear_.tip_diameter_mm > 0 && *gear_.tip_diameter_mm < 1e5))
-      refuse("tip_diameter", "tip_diameter = {:.6g} mm is outside (0, 100000) mm", *gear_.tip_diameter_mm);
-    if (!(gear_.bore_diameter_mm >= 0))
-      refuse("bore_diameter", "bore_diameter = {:.6g} mm is below 0", gear_.bore_diameter_mm);
+    if (gear_.tip_diameter_mm) positive("tip_diameter", *gear_.tip_diameter_mm);
+    not_negative("bore_diameter", gear_.bore_diameter_mm);
   }
 
   void zone_numbers() {
     const auto& zones = gear_.zones;
-    if (zones.empty()) refuse("zone", "the gear has no zone: at least 1 is needed");
-    if (zones.size() > 2) refuse("zone", "{} zones exceed the limit 2", zones.size());
+    zone_count(zones.size());
     for (std::size_t k = 0; k < zones.size(); ++k) {
       const auto& z = zones[k];
-      const double beta = degrees(z.helix_angle_rad);
-      if (!(std::abs(beta) <= 60))
-        refuse(key(k, "helix_angle"), "helix_angle = {:.6g} deg is outside [-60, 60] deg", beta);
+      helix_angle(k, z.helix_angle_rad);
       if (!(std::abs(z.from_mm) < 1e5))
-        refuse(key(k, "from"), "from = {:.6g} mm is outside (-100000, 100000) mm", z.from_mm);
+        refuse(zone_key(k, "from"), "from = {:.6g} mm is outside (-100000, 100000) mm", z.from_mm);
       if (!(z.to_mm > z.from_mm && z.to_mm < 1e5))
-        refuse(key(k, "to"), "to = {:.6g} mm is not above from = {:.6g} mm", z.to_mm, z.from_mm);
+        refuse(zone_key(k, "to"), "to = {:.6g} mm is not above from = {:.6g} mm", z.to_mm, z.from_mm);
       if (k == 0) continue;
       if (!(z.from_mm > zones[k - 1].to_mm))
-        refuse(key(k, "from"),
+        refuse(zone_key(k, "from"),
                "from = {:.6g} mm is not above the end of zone {} at {:.6g} mm: zones rise in z, with a groove between",
                z.from_mm, k - 1, zones[k - 1].to_mm);
     }
@@ -64,7 +57,7 @@ class Inspection {
   void profile(std::size_t k, const InvoluteKernel<double>& w) {
     const auto& zone = gear_.zones[k];
     if (k > 0 && std::abs(w.r - InvoluteKernel<double>(gear_, gear_.zones[0]).r) > kSameRadius * w.r) {
-      refuse(key(k, "helix_angle"),
+      refuse(zone_key(k, "helix_angle"),
              "helix_angle = {:.6g} deg gives a reference diameter of {:.4f} mm, zone 0 with {:.6g} deg one of {:.4f} "
              "mm; they must be equal: use equal or opposite helix angles",
              degrees(zone.helix_angle_rad), 2 * w.r, degrees(gear_.zones[0].helix_angle_rad),
@@ -128,20 +121,6 @@ class Inspection {
            2 * w.r_a, land, least, gear_.least_land,
            most ? fmt::format("a tip_diameter of {:.4f} mm or less would do", std::floor(1e4 * *most) / 1e4)
                 : std::string("no tip diameter would do: less profile_shift is needed"));
-  }
-
-  static std::string key(std::size_t zone, const char* name) { return fmt::format("zone[{}].{}", zone, name); }
-  template <typename... Args>
-  void refuse(std::string name, fmt::format_string<Args...> text, Args&&... args) {
-    Refusal refusal{std::move(name), fail(text, std::forward<Args>(args)...)};
-    const bool said = std::any_of(refusals.begin(), refusals.end(), [&](const Refusal& r) {
-      return r.key == refusal.key && r.diagnostic.message == refusal.diagnostic.message;
-    });
-    if (!said) refusals.push_back(std::move(refusal));
-  }
-  void range(const char* name, double value, double low, double high, const char* unit) {
-    if (!(value >= low && value <= high))
-      refuse(name, "{} = {:.6g}{} is outside [{:g}, {:g}]{}", name, value, unit, low, high, unit);
   }
 
   const CylindricalParameters& gear_;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/refusals.h"
 #include "geometry/face_gear/flank_field.h"
 #include "geometry/face_gear/inverse.h"
 #include "geometry/face_gear/space_sheet.h"
@@ -18,23 +19,9 @@ constexpr double kMostTurned = 0.1;  // rad: of a normal by modifications; beyon
 constexpr int kLeastTeeth = 4, kMostShaperTeeth = 1000, kMostTeeth = 10000;
 
 /// Collects the refusals of one gear.
-class Inspection {
+class Inspection : public Refusals {
  public:
   explicit Inspection(const FaceGearParameters& gear) : gear_(gear) {}
-
-  template <typename... Args>
-  void refuse(std::string key, fmt::format_string<Args...> text, Args&&... args) {
-    refusals.push_back({std::move(key), fail(text, std::forward<Args>(args)...)});
-  }
-  /// lo <= value <= hi; anything else, also what is not a number, is refused.
-  void range(const char* key, double value, double lo, double hi, const char* unit) {
-    if (value >= lo && value <= hi) return;
-    refuse(key, "{} = {:.6g}{} is outside [{:g}, {:g}]{}", key, value, unit, lo, hi, unit);
-  }
-  void integer_range(const char* key, int value, int lo, int hi) {
-    if (value >= lo && value <= hi) return;
-    refuse(key, "{} = {} is outside [{}, {}]", key, value, lo, hi);
-  }
 
   void numbers();
   void zone_numbers();
@@ -46,13 +33,9 @@ class Inspection {
   void groove(const std::vector<FaceGearRing>& rings, std::vector<std::string>& warnings);
   void modify(std::size_t zone, const FaceGearParameters& gear, FaceGearRing& r, std::vector<std::string>& warnings);
 
-  std::vector<Refusal> refusals;
-
  private:
   const FaceGearParameters& gear_;
 };
-
-std::string zone_key(std::size_t zone, const char* key) { return fmt::format("zone[{}].{}", zone, key); }
 
 void Inspection::numbers() {
   integer_range("shaper_teeth", gear_.shaper_teeth, kLeastTeeth, kMostShaperTeeth);
@@ -87,13 +70,10 @@ void Inspection::numbers() {
 
 void Inspection::zone_numbers() {
   const auto& zones = gear_.zones;
-  if (zones.empty()) refuse("zone", "the gear has no zone: at least 1 is needed");
-  if (zones.size() > 2) refuse("zone", "{} zones exceed the limit 2", zones.size());
+  zone_count(zones.size());
   for (std::size_t k = 0; k < zones.size(); ++k) {
     const auto& z = zones[k];
-    const double beta = degrees(z.helix_angle_rad);
-    if (!(std::abs(beta) <= 60))
-      refuse(zone_key(k, "helix_angle"), "helix_angle = {:.6g} deg is outside [-60, 60] deg", beta);
+    helix_angle(k, z.helix_angle_rad);
     if (!(z.inner_radius_mm > 0 && z.inner_radius_mm < 1e5))
       refuse(zone_key(k, "inner_radius"), "inner_radius = {:.6g} mm is outside (0, 100000) mm", z.inner_radius_mm);
     if (!(z.outer_radius_mm > z.inner_radius_mm && z.outer_radius_mm < 1e5))

@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/refusals.h"
 #include "geometry/tooth_space/limits.h"
 
 namespace toothpath::straight_bevel {
@@ -37,15 +38,12 @@ tooth_space::BevelBody body_of(const StraightBevelParameters& p, const CrownKern
 }
 
 /// Gathers what is wrong with a gear.
-class Inspection {
+class Inspection : public Refusals {
  public:
   explicit Inspection(const StraightBevelParameters& gear) : gear_(gear) {}
 
-  std::vector<Refusal> refusals;
-
   void numbers() {
-    if (gear_.teeth < kLeastTeeth || gear_.teeth > kMostTeeth)
-      refuse("teeth", "teeth = {} is outside [{}, {}]", gear_.teeth, kLeastTeeth, kMostTeeth);
+    integer_range("teeth", gear_.teeth, kLeastTeeth, kMostTeeth);
     range("pitch_angle", degrees(gear_.pitch_angle_rad), kLeastPitchAngle, kMostPitchAngle, " deg");
     range("outer_transverse_module", gear_.outer_transverse_module_mm, 0.05, 100, " mm");
     range("pressure_angle", degrees(gear_.pressure_angle_rad), 5, 45, " deg");
@@ -56,10 +54,9 @@ class Inspection {
     positive("addendum", gear_.addendum_mm);
     positive("dedendum", gear_.dedendum_mm);
     positive("fillet_radius", gear_.fillet_radius_mm);
-    for (const auto& [name, value] :
-         {std::pair{"bore_diameter", gear_.bore_diameter_mm}, std::pair{"hub_diameter", gear_.hub_diameter_mm},
-          std::pair{"hub_length", gear_.hub_length_mm}})
-      if (!(value >= 0)) refuse(name, "{} = {:.6g} mm is below 0", name, value);
+    not_negative("bore_diameter", gear_.bore_diameter_mm);
+    not_negative("hub_diameter", gear_.hub_diameter_mm);
+    not_negative("hub_length", gear_.hub_length_mm);
   }
 
   /// Limits of the blank.
@@ -150,18 +147,6 @@ class Inspection {
   }
 
  private:
-  template <typename... Args>
-  void refuse(const char* name, fmt::format_string<Args...> text, Args&&... args) {
-    refusals.push_back({name, fail(text, std::forward<Args>(args)...)});
-  }
-  void range(const char* name, double value, double low, double high, const char* unit) {
-    if (!(value >= low && value <= high))
-      refuse(name, "{} = {:.6g}{} is outside [{:g}, {:g}]{}", name, value, unit, low, high, unit);
-  }
-  void positive(const char* name, double value) {
-    if (!(value > 0 && value < 1e5)) refuse(name, "{} = {:.6g} mm is outside (0, 100000) mm", name, value);
-  }
-
   const StraightBevelParameters& gear_;
 };
 

@@ -1,0 +1,53 @@
+#include "geometry/base/refusals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+constexpr double kMostLength = 1e5, kMostHelixAngle = 60;  // mm, deg
+constexpr std::size_t kMostZones = 2;
+
+}  // namespace
+
+void Refusals::add(Refusal refusal) {
+  const bool said = std::any_of(refusals.begin(), refusals.end(), [&](const Refusal& r) {
+    return r.key == refusal.key && r.diagnostic.message == refusal.diagnostic.message;
+  });
+  if (!said) refusals.push_back(std::move(refusal));
+}
+
+void Refusals::range(const char* key, double value, double low, double high, const char* unit) {
+  if (!(value >= low && value <= high))
+    refuse(key, "{} = {:.6g}{} is outside [{:g}, {:g}]{}", key, value, unit, low, high, unit);
+}
+
+void Refusals::integer_range(const char* key, int value, int low, int high) {
+  if (value < low || value > high) refuse(key, "{} = {} is outside [{}, {}]", key, value, low, high);
+}
+
+void Refusals::positive(const char* key, double value_mm) {
+  if (!(value_mm > 0 && value_mm < kMostLength))
+    refuse(key, "{} = {:.6g} mm is outside (0, {:.0f}) mm", key, value_mm, kMostLength);
+}
+
+void Refusals::not_negative(const char* key, double value_mm) {
+  if (!(value_mm >= 0)) refuse(key, "{} = {:.6g} mm is below 0", key, value_mm);
+}
+
+void Refusals::zone_count(std::size_t zones) {
+  if (zones == 0) refuse("zone", "the gear has no zone: at least 1 is needed");
+  if (zones > kMostZones) refuse("zone", "{} zones exceed the limit {}", zones, kMostZones);
+}
+
+void Refusals::helix_angle(std::size_t zone, double helix_angle_rad) {
+  const double beta = degrees(helix_angle_rad);
+  if (!(std::abs(beta) <= kMostHelixAngle))
+    refuse(zone_key(zone, "helix_angle"), "helix_angle = {:.6g} deg is outside [-{:g}, {:g}] deg", beta,
+           kMostHelixAngle, kMostHelixAngle);
+}
+
+}  // namespace toothpath

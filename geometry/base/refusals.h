@@ -1,0 +1,41 @@
+// Gathers what is wrong with the numbers of a gear: refusals with their keys, each said once.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "geometry/base/refusal.h"
+#include "geometry/base/result.h"
+
+namespace toothpath {
+
+class Refusals {
+ public:
+  std::vector<Refusal> refusals;
+
+  [[nodiscard]] static std::string zone_key(std::size_t zone, const char* key) {
+    return fmt::format("zone[{}].{}", zone, key);
+  }
+
+ protected:
+  template <typename... Args>
+  void refuse(std::string key, fmt::format_string<Args...> text, Args&&... args) {
+    add({std::move(key), fail(text, std::forward<Args>(args)...)});
+  }
+  void add(Refusal refusal);
+  /// low <= value <= high; anything else, also what is not a number, is refused.
+  void range(const char* key, double value, double low, double high, const char* unit);
+  void integer_range(const char* key, int value, int low, int high);
+  /// A length above 0.
+  void positive(const char* key, double value_mm);
+  void not_negative(const char* key, double value_mm);
+  /// One zone or two.
+  void zone_count(std::size_t zones);
+  void helix_angle(std::size_t zone, double helix_angle_rad);
+};
+
+}  // namespace toothpath
