@@ -1,5 +1,6 @@
 // [gear], [[gear.zone]] and [stock]. What the geometry itself limits (undercut, pointing) is refused by geometry; here
 // stand the bounds of what a number of this kind can mean at all.
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -260,6 +261,100 @@ straight_bevel::StraightBevelParameters read_straight_bevel_gear(toml::TableRead
   return p;
 }
 
+/// A key with a number for the one blade, or with [outside, inside] for both.
+std::array<double, 2> read_blades(toml::TableReader& cut, const char* key, bool both, const toml::Range& range) {
+  if (!both) {
+    const double one = cut.number(key, range).value_or(0);
+    return {one, one};
+  }
+  const auto two = cut.numbers(key, 2, range);
+  return two ? std::array{(*two)[0], (*two)[1]} : std::array{0.0, 0.0};
+}
+
+/// Rounding of the blades: both may have one.
+std::array<double, 2> read_edges(toml::TableReader& cut, bool both) {
+  const auto number = toml::ValueShape::of_range(toml::ValueKind::number, kLength);
+  auto pair = toml::ValueShape::of_range(toml::ValueKind::numbers, kLength);
+  pair.count = {2, 2};
+  const toml::TomlValue* value =
+      cut.value("tool_edge_radius", both ? std::vector{number, pair} : std::vector{number}, toml::Presence::required);
+  return read_blades(cut, "tool_edge_radius", both && value && value->array(), kLength);
+}
+
+spiral_bevel::Cut read_cut(toml::TableReader& table, const spiral_bevel::SpiralBevelParameters& gear,
+                           std::vector<std::string>& warnings) {
+  using spiral_bevel::Cuts;
+  spiral_bevel::Cut cut;
+  if (const auto word = table.variant("flank", {"concave", "convex", "both"}))
+    cut.flank = *word == "both" ? Cuts::both : *word == "concave" ? Cuts::concave : Cuts::convex;
+  const bool both = cut.flank == Cuts::both;
+  cut.generated = table.boolean_or("generated", true);
+  const auto radii = read_blades(table, "blade_point_radius", both, kLength),
+             angles = read_blades(table, "blade_pressure_angle", both, {1, 45, " deg"}),
+             edges = read_edges(table, both);
+  for (std::size_t k = 0; k < 2; ++k) cut.blades[k] = {radii[k], radians(angles[k]), edges[k]};
+  cut.radial_distance_mm = table.number("radial_distance", kLengthOrZero).value_or(0);
+  cut.cradle_angle_rad = radians(table.number("center_roll_position", {-180, 180, " deg"}).value_or(0));
+  if (const auto angle = table.optional_number("machine_root_angle", {0.5, 90, " deg"}))
+    cut.root_angle_rad = radians(*angle);
+  else if (gear.root_angle_rad) cut.root_angle_rad = *gear.root_angle_rad;
+  else if (!table.has("machine_root_angle"))
+    table.refuse("machine_root_angle",
+                 "[[gear.cut]] lacks the key \"machine_root_angle\", and [gear] has no root_angle");
+  cut.work_offset_mm = table.number_or("work_offset", kSignedLength, cut.work_offset_mm);
+  cut.sliding_base_mm = table.number_or("sliding_base", kSignedLength, cut.sliding_base_mm);
+  cut.machine_center_mm = table.number_or("machine_center_to_crossing_point", kSignedLength, cut.machine_center_mm);
+  const auto ratio = table.optional_number("ratio_of_roll", {0, 1000, "", true});
+  cut.ratio_of_roll = ratio.value_or(0);
+  cut.modified = table.optional_number_list("modified_roll_coefficients", {-1000, 1000}, {0, 7}).value_or(cut.modified);
+  if (cut.generated && !table.has("ratio_of_roll"))
+    table.refuse("ratio_of_roll",
+                 "[[gear.cut]] lacks the key \"ratio_of_roll\": work per cradle; without a roll say generated = false");
+  for (const char* key : {"ratio_of_roll", "modified_roll_coefficients"})
+    if (!cut.generated && table.has(key)) table.refuse(key, "{} contradicts generated = false: nothing rolls", key);
+  const double slip = cut.ratio_of_roll * std::sin(gear.pitch_angle_rad);
+  if (ratio && gear.pitch_angle_rad > 0 && (slip < 0.93 || slip > 1.07)) {
+    const auto at = table.where("ratio_of_roll");
+    warnings.push_back(fmt::format(
+        "{}:{}:{}: warning: ratio_of_roll = {} is {:.3f} times 1 / sin(pitch_angle); work per cradle is meant, its "
+        "reciprocal is {:.6g}",
+        at.file, at.line, at.column, *ratio, slip, 1 / *ratio));
+  }
+  cut.tilt_rad = radians(table.number_or("cutter_tilt", {-45, 45, " deg"}, 0));
+  cut.swivel_rad = radians(table.number_or("cutter_swivel", {-360, 360, " deg"}, 0));
+  table.finish();
+  return cut;
+}
+
+spiral_bevel::SpiralBevelParameters read_spiral_bevel_gear(toml::TableReader& gear,
+                                                           std::vector<std::string>& warnings) {
+  spiral_bevel::SpiralBevelParameters p;
+  p.teeth = gear.integer("teeth", kTeeth).value_or(0);
+  if (const auto hand = gear.word("hand", {"right", "left"})) p.hand = *hand == "right" ? 1 : -1;
+  p.shaft_angle_rad = radians(gear.number_or("shaft_angle", kShaftAngle, degrees(p.shaft_angle_rad)));
+  p.pitch_angle_rad = radians(gear.number("pitch_angle", {1, 90, " deg"}).value_or(0));
+  p.outer_cone_distance_mm = gear.number("outer_cone_distance", kLength).value_or(0);
+  p.face_width_mm = gear.number("face_width", {kLeastFace, kLength.high, " mm"}).value_or(0);
+  p.tip_angle_rad = radians(gear.number("tip_angle", {0.01, 170, " deg"}).value_or(0));
+  p.tip_apex_mm = gear.number_or("tip_apex", kSignedLength, p.tip_apex_mm);
+  if (const auto angle = gear.optional_number("root_angle", {0.5, 90, " deg"})) p.root_angle_rad = radians(*angle);
+  p.root_apex_mm = gear.optional_number("root_apex", kSignedLength);
+  p.mean_space_width_mm = gear.optional_number("mean_space_width", kLength);
+  p.backlash_mm = gear.optional_number("backlash", kLengthOrZero);
+  p.bore_diameter_mm = gear.number_or("bore_diameter", kLengthOrZero, p.bore_diameter_mm);
+  optional_cylinder(gear, "hub", p.hub_diameter_mm, p.hub_length_mm);
+  auto cuts = gear.tables("cut", {1, 2}, toml::Presence::required);
+  if (!gear.has("cut"))
+    gear.refuse("cut", "[gear] lacks its cuts: one [[gear.cut]] with flank = \"both\", or one for each flank");
+  if (cuts.size() > 2) gear.refuse("cut", "{} cuts exceed the limit 2", cuts.size());
+  for (auto& table : cuts) p.cuts.push_back(read_cut(table, p, warnings));
+  if (gear.misplaced("modification"))
+    gear.refuse("modification",
+                "[[gear.modification]] is not there yet for a spiral_bevel_gear: leave it out, the flanks are plain");
+  gear.finish();
+  return p;
+}
+
 /// [stock] is a table of face gears.
 void refuse_stock(toml::TableReader& root, const Job& job) {
   if (root.misplaced("stock")) root.refuse("stock", "[stock] belongs to face gears; this gear is {}", job.gear_type());
@@ -292,6 +387,11 @@ constexpr GearType kGearTypes[] = {
     {"straight_bevel_gear",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
        job.gear = read_straight_bevel_gear(gear);
+       refuse_stock(root, job);
+     }},
+    {"spiral_bevel_gear",
+     [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
+       job.gear = read_spiral_bevel_gear(gear, job.warnings);
        refuse_stock(root, job);
      }},
 };

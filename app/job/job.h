@@ -18,6 +18,7 @@
 #include "geometry/cylindrical/parameters.h"
 #include "geometry/face_gear/parameters.h"
 #include "geometry/modification/modification.h"
+#include "geometry/spiral_bevel/parameters.h"
 #include "geometry/straight_bevel/parameters.h"
 #include "machines/coolant.h"
 #include "machines/toml/table_reader.h"
@@ -130,7 +131,7 @@ struct Job {
   std::string file;  ///< path as given on the command line
   std::string name;
   std::variant<face_gear::FaceGearParameters, bevel_gear::BevelGearParameters, cylindrical::CylindricalParameters,
-               straight_bevel::StraightBevelParameters>
+               straight_bevel::StraightBevelParameters, spiral_bevel::SpiralBevelParameters>
       gear;
   MachineChoice machine;
   std::optional<joints::Setup> setup;  ///< present in every milling job
@@ -163,6 +164,9 @@ struct Job {
   }
   [[nodiscard]] const straight_bevel::StraightBevelParameters* straight_bevel_gear() const {
     return std::get_if<straight_bevel::StraightBevelParameters>(&gear);
+  }
+  [[nodiscard]] const spiral_bevel::SpiralBevelParameters* spiral_bevel_gear() const {
+    return std::get_if<spiral_bevel::SpiralBevelParameters>(&gear);
   }
 };
 

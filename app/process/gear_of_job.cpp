@@ -148,6 +148,10 @@ ValueOrErrors<straight_bevel::StraightBevelGear> make_straight_bevel_gear(const 
   return made_of<straight_bevel::StraightBevelGear>(job, job.straight_bevel_gear(), "straight_bevel_gear");
 }
 
+ValueOrErrors<spiral_bevel::SpiralBevelGear> make_spiral_bevel_gear(const job::Job& job) {
+  return made_of<spiral_bevel::SpiralBevelGear>(job, job.spiral_bevel_gear(), "spiral_bevel_gear");
+}
+
 namespace {
 
 /// What has no tilted planes, and what can be done instead.

@@ -9,6 +9,7 @@
 #include "geometry/bevel_gear/gear.h"
 #include "geometry/cylindrical/gear.h"
 #include "geometry/face_gear/gear.h"
+#include "geometry/spiral_bevel/gear.h"
 #include "geometry/straight_bevel/gear.h"
 #include "machines/machine.h"
 
@@ -31,6 +32,9 @@ using ValueOrErrors = Expected<T, std::vector<Diagnostic>>;
 
 /// The straight bevel gear of the job. Refused likewise.
 [[nodiscard]] ValueOrErrors<straight_bevel::StraightBevelGear> make_straight_bevel_gear(const job::Job& job);
+
+/// The spiral bevel gear of the job. Refused likewise.
+[[nodiscard]] ValueOrErrors<spiral_bevel::SpiralBevelGear> make_spiral_bevel_gear(const job::Job& job);
 
 /// What a face gear alone can do is refused to a gear of another type.
 [[nodiscard]] Diagnostic needs_face_gear(const job::Job& job);

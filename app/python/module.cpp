@@ -15,6 +15,7 @@
 #include "app/process/bevel/files.h"
 #include "app/process/cylinder/limits.h"
 #include "app/process/gear_of_job.h"
+#include "app/process/spiral_bevel/limits.h"
 #include "app/process/straight_bevel/limits.h"
 #include "app/report/limits/json.h"
 #include "geometry/base/inputs_read.h"
@@ -108,7 +109,8 @@ class Gear {
     if (job_.face_gear()) face_ = value_or_raise(process::make_face_gear(job_));
     else if (job_.bevel_gear()) bevel_ = value_or_raise(process::make_bevel_gear(job_));
     else if (job_.cylindrical_gear()) cylinder_ = value_or_raise(process::make_cylindrical_gear(job_));
-    else cone_ = value_or_raise(process::make_straight_bevel_gear(job_));
+    else if (job_.straight_bevel_gear()) cone_ = value_or_raise(process::make_straight_bevel_gear(job_));
+    else spiral_ = value_or_raise(process::make_spiral_bevel_gear(job_));
   }
 
   [[nodiscard]] std::string name() const { return job_.name; }
@@ -123,7 +125,8 @@ class Gear {
     return from_json(face_       ? limits::limits_json(*face_)
                      : bevel_    ? bevel::limits_json(*bevel_)
                      : cylinder_ ? cylinder::limits_json(*cylinder_)
-                                 : straight_bevel::limits_json(*cone_));
+                     : cone_     ? straight_bevel::limits_json(*cone_)
+                                 : spiral_bevel::limits_json(*spiral_));
   }
 
   [[nodiscard]] std::vector<Grid> flanks(std::optional<int> rows, std::optional<int> columns,
@@ -134,7 +137,8 @@ class Gear {
     if (!bevel_) {
       const auto points = value_or_raise(inspection::inspection_grid(face_       ? drawn_solid(*face_)
                                                                      : cylinder_ ? drawn_solid(*cylinder_)
-                                                                                 : drawn_solid(*cone_),
+                                                                     : cone_     ? drawn_solid(*cone_)
+                                                                                 : drawn_solid(*spiral_),
                                                                      options));
       return grids_of(points, options, [](int side) { return py::int_(side); });
     }
@@ -150,6 +154,7 @@ class Gear {
   std::optional<bevel_gear::BevelGear> bevel_;
   std::optional<cylindrical::CylindricalGear> cylinder_;
   std::optional<straight_bevel::StraightBevelGear> cone_;
+  std::optional<spiral_bevel::SpiralBevelGear> spiral_;
 };
 
 /// What a run found out, and where its files are.

@@ -3,6 +3,7 @@
 #include "app/process/bevel/process.h"
 #include "app/process/cylinder/process.h"
 #include "app/process/face/process.h"
+#include "app/process/spiral_bevel/process.h"
 #include "app/process/straight_bevel/process.h"
 
 namespace toothpath::flow {
@@ -17,6 +18,9 @@ Made process_of(const bevel_gear::BevelGearParameters&, const job::Job& job) { r
 Made process_of(const cylindrical::CylindricalParameters&, const job::Job& job) { return cylinder::make_process(job); }
 Made process_of(const straight_bevel::StraightBevelParameters&, const job::Job& job) {
   return straight_bevel::make_process(job);
+}
+Made process_of(const spiral_bevel::SpiralBevelParameters&, const job::Job& job) {
+  return spiral_bevel::make_process(job);
 }
 
 }  // namespace
