@@ -6,8 +6,10 @@
 #include <iterator>
 #include <variant>
 
+#include "app/job/flank_points.h"
 #include "app/job/tables.h"
 #include "geometry/base/angle.h"
+#include "machines/toml/input_text.h"
 
 namespace toothpath::job {
 namespace {
@@ -23,7 +25,8 @@ constexpr toml::Range kSignedLength{-10000, 10000, " mm"};
 constexpr toml::Range kLength{0, 10000, " mm", true};
 constexpr toml::Range kLengthOrZero{0, 10000, " mm"};
 constexpr std::size_t kMostZones = 2;
-constexpr double kLeastFace = 0.01;  // mm; a face of the smallest module is wider
+constexpr double kLeastFace = 0.01;                                     // mm; a face of the smallest module is wider
+constexpr std::size_t kMostPointBytes = 64u << 20, kMostCorners = 100;  // of a meridian
 
 /// NAME_diameter and NAME_length: both or none.
 void optional_cylinder(toml::TableReader& gear, const std::string& name, double& diameter, double& length) {
@@ -355,6 +358,56 @@ spiral_bevel::SpiralBevelParameters read_spiral_bevel_gear(toml::TableReader& ge
   return p;
 }
 
+/// A list of [r, z].
+std::vector<Vec2> read_meridian(toml::TableReader& gear, const char* key) {
+  toml::ValueShape rows{toml::ValueKind::rows};
+  rows.columns = {"r", "z"};
+  rows.ranges = {kRadius, kSignedLength};
+  rows.count = {2, kMostCorners};
+  std::vector<Vec2> out;
+  const toml::TomlValue* value = gear.value(key, {rows}, toml::Presence::required);
+  if (!value) {
+    gear.refuse(key, "[gear] lacks the key \"{}\": the meridian [[r, z], ..]", key);
+    return out;
+  }
+  const toml::TomlArray* list = value->array();
+  if (!list || list->values.size() < 2 || list->values.size() > kMostCorners) {
+    gear.refuse(key, "{} must be a list of 2 to {} pairs [r, z] in mm", key, kMostCorners);
+    return out;
+  }
+  for (std::size_t k = 0; k < list->values.size(); ++k)
+    if (const auto pair = gear.numbers_of(list->values[k], fmt::format("{}[{}]", key, k), {kRadius, kSignedLength}))
+      out.emplace_back((*pair)[0], (*pair)[1]);
+  return out;
+}
+
+flank_grid::FlankGridParameters read_flank_grid(toml::TableReader& gear, const std::string& directory) {
+  flank_grid::FlankGridParameters p;
+  p.teeth = gear.integer("teeth", kTeeth).value_or(0);
+  if (const auto name = gear.text("points")) {
+    p.file = (std::filesystem::path(directory) / *name).string();
+    if (const auto text = toml::read_input_text(p.file, kMostPointBytes); !text) {
+      gear.refuse("points", "points = \"{}\": {}", *name, text.error().message);
+    } else if (auto points = parse_flank_points(*text, p.file); !points) {
+      gear.refuse_at(points.error().position, "{}", points.error().message);
+    } else {
+      p.plus = std::move(points->plus);
+      p.minus = std::move(points->minus);
+    }
+  }
+  p.fillet_radius_mm = gear.number("fillet_radius", kLength).value_or(0);
+  p.root = read_meridian(gear, "root");
+  p.tip = read_meridian(gear, "tip");
+  p.bore_diameter_mm = gear.number_or("bore_diameter", kLengthOrZero, p.bore_diameter_mm);
+  optional_cylinder(gear, "hub", p.hub_diameter_mm, p.hub_length_mm);
+  if (gear.misplaced("modification"))
+    gear.refuse("modification",
+                "[[gear.modification]] is not there yet for a flank_grid: leave it out, the flanks are those of the "
+                "points");
+  gear.finish();
+  return p;
+}
+
 /// [stock] is a table of face gears.
 void refuse_stock(toml::TableReader& root, const Job& job) {
   if (root.misplaced("stock")) root.refuse("stock", "[stock] belongs to face gears; this gear is {}", job.gear_type());
@@ -392,6 +445,11 @@ constexpr GearType kGearTypes[] = {
     {"spiral_bevel_gear",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
        job.gear = read_spiral_bevel_gear(gear, job.warnings);
+       refuse_stock(root, job);
+     }},
+    {"flank_grid",
+     [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
+       job.gear = read_flank_grid(gear, job.directory());
        refuse_stock(root, job);
      }},
 };

@@ -17,6 +17,7 @@
 #include "geometry/contact/pinion.h"
 #include "geometry/cylindrical/parameters.h"
 #include "geometry/face_gear/parameters.h"
+#include "geometry/flank_grid/parameters.h"
 #include "geometry/modification/modification.h"
 #include "geometry/spiral_bevel/parameters.h"
 #include "geometry/straight_bevel/parameters.h"
@@ -131,7 +132,8 @@ struct Job {
   std::string file;  ///< path as given on the command line
   std::string name;
   std::variant<face_gear::FaceGearParameters, bevel_gear::BevelGearParameters, cylindrical::CylindricalParameters,
-               straight_bevel::StraightBevelParameters, spiral_bevel::SpiralBevelParameters>
+               straight_bevel::StraightBevelParameters, spiral_bevel::SpiralBevelParameters,
+               flank_grid::FlankGridParameters>
       gear;
   MachineChoice machine;
   std::optional<joints::Setup> setup;  ///< present in every milling job
@@ -167,6 +169,9 @@ struct Job {
   }
   [[nodiscard]] const spiral_bevel::SpiralBevelParameters* spiral_bevel_gear() const {
     return std::get_if<spiral_bevel::SpiralBevelParameters>(&gear);
+  }
+  [[nodiscard]] const flank_grid::FlankGridParameters* flank_grid() const {
+    return std::get_if<flank_grid::FlankGridParameters>(&gear);
   }
 };
 

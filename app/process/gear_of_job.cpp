@@ -152,6 +152,10 @@ ValueOrErrors<spiral_bevel::SpiralBevelGear> make_spiral_bevel_gear(const job::J
   return made_of<spiral_bevel::SpiralBevelGear>(job, job.spiral_bevel_gear(), "spiral_bevel_gear");
 }
 
+ValueOrErrors<flank_grid::FlankGridGear> make_flank_grid_gear(const job::Job& job) {
+  return made_of<flank_grid::FlankGridGear>(job, job.flank_grid(), "flank_grid");
+}
+
 namespace {
 
 /// What has no tilted planes, and what can be done instead.

@@ -9,6 +9,7 @@
 #include "geometry/bevel_gear/gear.h"
 #include "geometry/cylindrical/gear.h"
 #include "geometry/face_gear/gear.h"
+#include "geometry/flank_grid/gear.h"
 #include "geometry/spiral_bevel/gear.h"
 #include "geometry/straight_bevel/gear.h"
 #include "machines/machine.h"
@@ -35,6 +36,9 @@ using ValueOrErrors = Expected<T, std::vector<Diagnostic>>;
 
 /// The spiral bevel gear of the job. Refused likewise.
 [[nodiscard]] ValueOrErrors<spiral_bevel::SpiralBevelGear> make_spiral_bevel_gear(const job::Job& job);
+
+/// The gear by points of the job. Refused likewise; what a point is refused for, at its line of the file.
+[[nodiscard]] ValueOrErrors<flank_grid::FlankGridGear> make_flank_grid_gear(const job::Job& job);
 
 /// What a face gear alone can do is refused to a gear of another type.
 [[nodiscard]] Diagnostic needs_face_gear(const job::Job& job);

@@ -30,7 +30,10 @@ const char* help_against(proof::ErrorSource source) {
     case ErrorSource::ridge:
     case ErrorSource::orientation:
     case ErrorSource::verification:
-    case ErrorSource::deflection: return nullptr;
+    case ErrorSource::deflection:
+    case ErrorSource::point_spacing:
+    case ErrorSource::given_normals:
+    case ErrorSource::continuation: return nullptr;
   }
   return nullptr;
 }

@@ -14,6 +14,7 @@
 #include "app/job/file.h"
 #include "app/process/bevel/files.h"
 #include "app/process/cylinder/limits.h"
+#include "app/process/flank_grid/limits.h"
 #include "app/process/gear_of_job.h"
 #include "app/process/spiral_bevel/limits.h"
 #include "app/process/straight_bevel/limits.h"
@@ -110,7 +111,8 @@ class Gear {
     else if (job_.bevel_gear()) bevel_ = value_or_raise(process::make_bevel_gear(job_));
     else if (job_.cylindrical_gear()) cylinder_ = value_or_raise(process::make_cylindrical_gear(job_));
     else if (job_.straight_bevel_gear()) cone_ = value_or_raise(process::make_straight_bevel_gear(job_));
-    else spiral_ = value_or_raise(process::make_spiral_bevel_gear(job_));
+    else if (job_.spiral_bevel_gear()) spiral_ = value_or_raise(process::make_spiral_bevel_gear(job_));
+    else points_ = value_or_raise(process::make_flank_grid_gear(job_));
   }
 
   [[nodiscard]] std::string name() const { return job_.name; }
@@ -126,7 +128,8 @@ class Gear {
                      : bevel_    ? bevel::limits_json(*bevel_)
                      : cylinder_ ? cylinder::limits_json(*cylinder_)
                      : cone_     ? straight_bevel::limits_json(*cone_)
-                                 : spiral_bevel::limits_json(*spiral_));
+                     : spiral_   ? spiral_bevel::limits_json(*spiral_)
+                                 : flank_grid::limits_json(*points_));
   }
 
   [[nodiscard]] std::vector<Grid> flanks(std::optional<int> rows, std::optional<int> columns,
@@ -138,7 +141,8 @@ class Gear {
       const auto points = value_or_raise(inspection::inspection_grid(face_       ? drawn_solid(*face_)
                                                                      : cylinder_ ? drawn_solid(*cylinder_)
                                                                      : cone_     ? drawn_solid(*cone_)
-                                                                                 : drawn_solid(*spiral_),
+                                                                     : spiral_   ? drawn_solid(*spiral_)
+                                                                                 : drawn_solid(*points_),
                                                                      options));
       return grids_of(points, options, [](int side) { return py::int_(side); });
     }
@@ -155,6 +159,7 @@ class Gear {
   std::optional<cylindrical::CylindricalGear> cylinder_;
   std::optional<straight_bevel::StraightBevelGear> cone_;
   std::optional<spiral_bevel::SpiralBevelGear> spiral_;
+  std::optional<flank_grid::FlankGridGear> points_;
 };
 
 /// What a run found out, and where its files are.

@@ -115,8 +115,18 @@ constexpr Meaning kJobMeanings[] = {
     {"gear.cut.cutter_swivel", "Direction in which it is tilted, from the line through cradle axis and cutter centre."},
     {"gear.thickness_shift",
      "Half of what the tooth is thicker by than half the pitch, on the outer pitch circle, in modules."},
-    {"gear.fillet_radius", "Rounding of the crown gear's tooth tip at the large end."},
-    {"gear.hub_diameter", "Diameter of the hub behind the large end."},
+    {"gear.fillet_radius",
+     "Rounding of the crown gear's tooth tip at the large end; of a flank grid the radius of the ball that rolls "
+     "between flank and root."},
+    {"gear.points",
+     "File beside the job with points of both flanks of one space, columns `flank,row,column,x,y,z`, and `i,j,k` where "
+     "normals out of the material are known; flank 1 is that on the side of negative azimuth, rows run from the root "
+     "to "
+     "the tip."},
+    {"gear.root", "Meridian of the root surface, from the end of the teeth at column 0 to the other."},
+    {"gear.tip", "Meridian of the tip surface, in the same sense."},
+    {"gear.hub_diameter",
+     "Diameter of the hub behind the large end; of a flank grid behind the end that lies farther along z."},
     {"gear.hub_length", "Length of the hub behind the large end."},
     {"gear.shaft_diameter", "Diameter of a shaft from the small end towards the apex and beyond."},
     {"gear.shaft_length", "Length of that shaft."},

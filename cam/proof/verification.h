@@ -113,7 +113,10 @@ enum class ErrorSource : std::uint8_t {
   pivots,
   tool_length,
   verification,
-  deflection
+  deflection,
+  point_spacing,
+  given_normals,
+  continuation
 };
 [[nodiscard]] constexpr const char* to_string(ErrorSource source) {
   switch (source) {
@@ -133,6 +136,9 @@ enum class ErrorSource : std::uint8_t {
     case ErrorSource::tool_length: return "tool length";
     case ErrorSource::verification: return "verification";
     case ErrorSource::deflection: return "deflection";
+    case ErrorSource::point_spacing: return "spacing of the points";
+    case ErrorSource::given_normals: return "given normals";
+    case ErrorSource::continuation: return "continuation";
   }
   return "";
 }

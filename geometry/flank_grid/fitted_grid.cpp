@@ -16,11 +16,12 @@ using tooth_space::Chart;
 using tooth_space::Piece;
 
 constexpr int kLeastTeeth = 5, kMostTeeth = 5000, kLeastPoints = 4, kMostPoints = 400;
-constexpr double kMostRatio = 3;     // of neighbouring chords
-constexpr double kEndsOff = 0.005;   // mm: both ends of the teeth are square to one direction within it
-constexpr double kStraight = 1e-5;   // mm: points of a meridian that lie so close to its chord add nothing
-constexpr double kLeastFace = 0.01;  // mm
-constexpr double kLeastArc = 1;      // deg, of a fillet
+constexpr double kMostRatio = 3;      // of neighbouring chords
+constexpr double kEndsOff = 0.005;    // mm: both ends of the teeth are square to one direction within it
+constexpr double kStraight = 1e-5;    // mm: points of a meridian that lie so close to its chord add nothing
+constexpr double kLeastFace = 0.01;   // mm
+constexpr double kLeastArc = 1;       // deg, of a fillet
+constexpr double kNearlyFlat = 1e-9;  // sine of a chart
 constexpr int kStations = 17, kHalvings = 50;
 
 double along(const Chart& chart, const Vec2& rz) { return chart.cosine * rz.x() - chart.sine * rz.y(); }
@@ -162,7 +163,11 @@ class Fitting {
     auto& ring = kernel.ring;
     ring.chart.sine = std::abs(upwards.x()) < 1e-9 ? 0 : upwards.x();
     ring.chart.cosine = std::abs(upwards.y()) < 1e-9 ? 0 : upwards.y();
-    if (ring.chart.sine == 0) ring.chart.cosine = ring.chart.cosine > 0 ? 1 : -1;
+    if (ring.chart.sine == 0) {
+      // Teeth that look down stand on a cone that is nearly flat: a chart without sine is one of teeth that look up.
+      if (ring.chart.cosine < 0) ring.chart.sine = kNearlyFlat;
+      ring.chart.cosine = ring.chart.cosine > 0 ? 1 : -1;
+    }
     if (ring.chart.cosine == 0) ring.chart.sine = 1;
     const Chart& chart = ring.chart;
     ring.pitch = kTwoPi / gear_.teeth;
@@ -195,6 +200,8 @@ class Fitting {
     const Chart& chart = kernel.ring.chart;
     const Sorted p(g, chart);
     const std::size_t before = refusals.size();
+    between_the_meridians(side);
+    if (refusals.size() != before) return;
     if (p.turned == rises_)
       return refuse("points",
                     "flank {}: column 0 lies at the end of the root, its columns must run as root does, from r {:.4f} "
@@ -290,7 +297,7 @@ class Fitting {
             fmt::format("the ball is wider than the space at {}: the fillets overlap by {:.4f} mm", where, -land));
       if (!space.tip_edge(1, s) || !space.tip_edge(-1, s))
         return refuse("tip", "the flanks do not reach the tip surface at {}", where);
-      if (const double land = top_land_mm(space, s); !(land > 0))
+      if (const double land = tooth_space::top_land_mm(space, s); !(land > 0))
         return refuse("tip", "the tooth is pointed: its flanks cross {:.4f} mm before the tip surface at {}", -land,
                       where);
     }
@@ -405,7 +412,7 @@ class Fitting {
   }
   static void name_stations(tooth_space::Outline& ring) {
     const Chart& chart = ring.chart;
-    if (chart.sine == 0) {
+    if (chart.sine <= kNearlyFlat) {
       ring.sign = chart.cosine;
     } else if (chart.cosine == 0) {
       ring.along = "z";
@@ -458,6 +465,26 @@ class Fitting {
                             kind, number, last, length, ratio, kMostRatio);
       before = chord;
     }
+  }
+
+  /// Another unit or frame shows in places far from root and tip.
+  void between_the_meridians(int side) {
+    const GridPoints& g = gear_.points(side);
+    Vec2 low(INFINITY, INFINITY), high = -low;
+    for (const auto* line : {&gear_.root, &gear_.tip})
+      for (const Vec2& p : *line) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    const double room = (high - low).norm();
+    for (int i = 0; i < g.rows; ++i)
+      for (int j = 0; j < g.columns; ++j) {
+        const Vec3& p = g.place[g.index(i, j)];
+        const Vec2 rz(radius(p), p.z());
+        const double off = (rz - rz.cwiseMax(low).cwiseMin(high)).norm();
+        if (!(off < room))
+          return refuse_point(side, i, j,
+                              "the point, at {}, lies {:.4f} mm beside the teeth between root and tip: another unit, "
+                              "or another frame",
+                              place_words(p), off);
+      }
   }
 
   void compare_normals(int side, const Sorted& p, const Flank& flank) {
@@ -529,13 +556,8 @@ Flank flank_through(const GridPoints& grid, int side, const Chart& chart) {
 std::optional<double> spacing_error(const GridPoints& grid, int side, const Chart& chart) {
   const Sorted p(grid, chart);
   const Knots knots = knots_of(p, chart);
-  // A direction that has too few of them keeps all of its points.
-  const auto kept = [](int count) {
-    const auto half = numbers(count, 2);
-    return half.size() < std::size_t(kLeastPoints) ? numbers(count, 1) : half;
-  };
-  const std::vector<int> rows = kept(grid.rows), columns = kept(grid.columns);
-  if (int(rows.size()) == grid.rows && int(columns.size()) == grid.columns) return {};
+  const std::vector<int> rows = numbers(grid.rows, 2), columns = numbers(grid.columns, 2);
+  if (int(std::min(rows.size(), columns.size())) < kLeastPoints) return {};
   const Flank coarse = through(p, knots, rows, columns, side);
   double worst = 0;
   for (int i = 0; i < grid.rows; ++i)
@@ -545,14 +567,6 @@ std::optional<double> spacing_error(const GridPoints& grid, int side, const Char
       worst = std::max(worst, std::abs((p.at(i, j) - place).dot(normal)));
     }
   return worst;
-}
-
-double top_land_mm(const GridSpace& space, double s) {
-  const auto plus = space.tip_edge(1, s), minus = space.tip_edge(-1, s);
-  if (!plus || !minus) return 0;
-  const auto& ring = space.outline();
-  // Both of tooth 0: the plus flank ends it on the side of growing azimuth.
-  return ring.chart.r(s, space.tip(s)) * std::remainder(plus->azimuth - minus->azimuth, kTwoPi);
 }
 
 double root_land_mm(const GridSpace& space, double s) {

@@ -43,8 +43,6 @@ struct FittedGrid {
 /// leaves fewer than four either way.
 [[nodiscard]] std::optional<double> spacing_error(const GridPoints& grid, int side, const tooth_space::Chart& chart);
 
-/// Arc of the top land on the tip surface at s, mm; 0 where the flanks do not reach it.
-[[nodiscard]] double top_land_mm(const GridSpace& space, double s);
 /// Arc of the root between both fillets at s, mm.
 [[nodiscard]] double root_land_mm(const GridSpace& space, double s);
 

@@ -61,11 +61,11 @@ class RolledBall {
   /// u of the flank where the ball touches it.
   template <typename S>
   [[nodiscard]] S contact(const S& v) const {
-    return lifted(derivatives(base_of(v), kDepth<S>), v, 0, 0);
+    return lifted(derivatives(base_of(v), kDepth<S>, 0, 1), v, 0, 0);
   }
   template <typename S>
   void at(const S& v, Vec3T<S>& centre, Vec3T<S>& normal) const {
-    const auto f = derivatives(base_of(v), kDepth<S>);
+    const auto f = derivatives(base_of(v), kDepth<S>, 1, kNumbers);
     for (std::size_t k = 0; k < 3; ++k) {
       centre[int(k)] = lifted(f, v, 0, 1 + k);
       normal[int(k)] = lifted(f, v, 0, 4 + k);
@@ -83,8 +83,10 @@ class RolledBall {
                                       const Sample* near);
   bool add(const Flank& flank, const Meridian& root, double radius_mm, const Sample& a, const Sample& b, int halvings);
 
+  /// Of the numbers from one to before another.
   template <typename B>
-  [[nodiscard]] CurveDerivatives<B, kNumbers> derivatives(const B& v, int order) const {
+  [[nodiscard]] CurveDerivatives<B, kNumbers> derivatives(const B& v, int order, std::size_t begin,
+                                                          std::size_t end) const {
     CurveDerivatives<B, kNumbers> out;
     const auto piece = [&](double x) {
       const auto k = std::upper_bound(breaks_.begin(), breaks_.end(), x) - breaks_.begin();
@@ -93,7 +95,7 @@ class RolledBall {
     const std::size_t first = piece(low_of(v)), last = piece(high_of(v));
     for (std::size_t i = first; i <= last; ++i) {
       const B x = within(v, i == first ? -INFINITY : breaks_[i], i == last ? INFINITY : breaks_[i + 1]) - B(breaks_[i]);
-      for (std::size_t k = 0; k < kNumbers; ++k) {
+      for (std::size_t k = begin; k < end; ++k) {
         const auto& c = cubics_[i][k];
         for (int a = 0; a <= order; ++a) {
           const B y = cubic_derivative<B>({B(c[0]), B(c[1]), B(c[2]), B(c[3])}, x, a);

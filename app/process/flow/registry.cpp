@@ -3,6 +3,7 @@
 #include "app/process/bevel/process.h"
 #include "app/process/cylinder/process.h"
 #include "app/process/face/process.h"
+#include "app/process/flank_grid/process.h"
 #include "app/process/spiral_bevel/process.h"
 #include "app/process/straight_bevel/process.h"
 
@@ -22,6 +23,7 @@ Made process_of(const straight_bevel::StraightBevelParameters&, const job::Job& 
 Made process_of(const spiral_bevel::SpiralBevelParameters&, const job::Job& job) {
   return spiral_bevel::make_process(job);
 }
+Made process_of(const flank_grid::FlankGridParameters&, const job::Job& job) { return flank_grid::make_process(job); }
 
 }  // namespace
 

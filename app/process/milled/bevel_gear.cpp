@@ -1,5 +1,7 @@
 #include "app/process/milled/bevel_gear.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -20,7 +22,9 @@ Json mid_flank(const tooth_space::ToothSpace& space, int side) {
   const auto at = tooth_space::middle_of_flank(space, side, s);
   if (!at) return nullptr;
   const auto k = tooth_space::principal_curvatures(*at);
-  return Json{{"cone_distance", -s}, {"curvatures", {k.least, k.most}}, {"gauss", k.least * k.most}};
+  std::string station = ring.along;
+  std::replace(station.begin(), station.end(), ' ', '_');
+  return Json{{station, ring.sign * s}, {"curvatures", {k.least, k.most}}, {"gauss", k.least * k.most}};
 }
 
 }  // namespace
@@ -45,7 +49,7 @@ ToothedGear bevel_gear(std::shared_ptr<const void> owner, std::shared_ptr<const 
   return out;
 }
 
-Json bevel_zone(const tooth_space::ToothSpace& space) {
+Json ring_zone(const tooth_space::ToothSpace& space) {
   const auto& ring = space.outline();
   Json flanks = Json::array();
   const double stations[] = {ring.s_from, 0.5 * (ring.s_from + ring.s_to), ring.s_to};
@@ -64,7 +68,8 @@ Json bevel_zone(const tooth_space::ToothSpace& space) {
                       {"undercut", nullptr},
                       {"mid_flank", mid_flank(space, side)}});
   }
-  return {{"zone", 0}, {"from", -ring.s_to}, {"to", -ring.s_from}, {"flanks", std::move(flanks)}};
+  const auto [from, to] = ring.told(ring.s_from, ring.s_to);
+  return {{"zone", 0}, {"from", from}, {"to", to}, {"flanks", std::move(flanks)}};
 }
 
 void add_blank(Json& limits, const tooth_space::ToothSpace& space) {
@@ -78,15 +83,16 @@ svg::LineChart land_chart(const tooth_space::ToothSpace& space, const std::funct
                           std::string note) {
   const auto& ring = space.outline();
   svg::LineChart chart;
-  chart.title = "Lands over the cone distance";
-  chart.x_label = "cone distance [mm]";
+  chart.title = fmt::format("Lands over the {}", ring.along);
+  chart.x_label = fmt::format("{} [mm]", ring.along);
   chart.y_label = "arc [mm]";
   svg::ChartSeries top{"top land", {}, {}}, root{"root land", {}, {}};
+  const auto [from, to] = ring.told(ring.s_from, ring.s_to);
   for (int k = 0; k < kPoints; ++k) {
-    const double s = ring.s_to + (ring.s_from - ring.s_to) * k / (kPoints - 1);
-    top.x.push_back(-s);
+    const double x = from + (to - from) * k / (kPoints - 1), s = ring.sign * x;
+    top.x.push_back(x);
     top.y.push_back(tooth_space::top_land_mm(space, s));
-    root.x.push_back(-s);
+    root.x.push_back(x);
     root.y.push_back(root_land(s));
   }
   chart.series = {std::move(top), std::move(root)};

@@ -34,6 +34,25 @@ Diagnostic no_contact(const job::Job& job) {
                  job.gear_type());
 }
 
+/// With the rows that the gear type adds to the ledger.
+class ToothedMilling final : public Milling {
+ public:
+  ToothedMilling(const job::Job& job, const machines::Machine& machine, const ToothedGear& gear,
+                 const proof::ProofLimits& limits, const process::FlankGrid& grid)
+      : Milling(job, machine, analytic::GearDistance(gear.part, ball::reach_of(job.tools)), gear.body, limits, grid),
+        rows_(gear.ledger) {}
+  [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program,
+                                                       const process::ProgramProof& proof,
+                                                       double blend_mm) const override {
+    std::vector<proof::LedgerEntry> out = Milling::ledger(program, proof, blend_mm);
+    out.insert(out.end(), rows_.begin(), rows_.end());
+    return out;
+  }
+
+ private:
+  std::vector<proof::LedgerEntry> rows_;
+};
+
 }  // namespace
 
 Result<process::Correction> ToothedProcess::correct(const job::MeasuredInput&, app::StageClock&) {
@@ -83,10 +102,8 @@ std::unique_ptr<process::GearMilling> ToothedProcess::milling(const machines::Ma
                                                               const proof::ProofLimits& limits,
                                                               const process::FlankGrid& grid,
                                                               app::StageClock& clock) const {
-  return clock.run("distance index", [&] {
-    return std::make_unique<Milling>(job_, machine, analytic::GearDistance(gear_.part, ball::reach_of(job_.tools)),
-                                     gear_.body, limits, grid);
-  });
+  return clock.run("distance index",
+                   [&] { return std::make_unique<ToothedMilling>(job_, machine, gear_, limits, grid); });
 }
 process::ValueOrErrors<process::CutFlanks> ToothedProcess::shaped(const process::FlankGrid&) const {
   return std::vector{process::needs_face_gear(job_)};

@@ -26,7 +26,8 @@ struct ToothedGear {
   sheet::PartOutline outline;
   std::string subtitle;  ///< of the page, without the machine
   std::function<std::string()> limits_json;
-  std::vector<svg::LineChart> limit_charts;  ///< one a zone
+  std::vector<svg::LineChart> limit_charts;     ///< one a zone
+  std::vector<proof::LedgerEntry> ledger = {};  ///< what this gear type adds to it
 };
 
 /// A gear type that has more to say derives from it. The job must outlive it.

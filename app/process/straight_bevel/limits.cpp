@@ -17,7 +17,7 @@ std::string limits_json(const StraightBevelGear& gear) {
                                 {"outer_cone_distance", w.R_e},
                                 {"inner_cone_distance", w.R_i}};
   milled::add_blank(out, gear.space());
-  out["zones"] = nlohmann::ordered_json::array({milled::bevel_zone(gear.space())});
+  out["zones"] = nlohmann::ordered_json::array({milled::ring_zone(gear.space())});
   return json_text(out, 2) + "\n";
 }
 

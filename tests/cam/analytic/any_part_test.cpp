@@ -15,6 +15,7 @@
 #include "geometry/tooth_space/limits.h"
 #include "tests/geometry/bevel_gear/samples.h"
 #include "tests/geometry/cylindrical/samples.h"
+#include "tests/geometry/flank_grid/samples.h"
 #include "tests/geometry/spiral_bevel/samples.h"
 #include "tests/geometry/straight_bevel/samples.h"
 #include "tests/support/brute_force_bevel_gear.h"
@@ -298,6 +299,44 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"herringbone", [] { return solid_of(narrow_curved(22, 3.3)); }},
                     Case{"involute", [] { return solid_of(narrow_bevel(straight_bevel::Form::spherical_involute)); }}),
     [](const testing::TestParamInfo<Case>& c) { return std::string(c.param.name); });
+
+/// A gear by points stands where the gear stands that they were taken from, besides its fillets; nothing rests on
+/// sampling.
+TEST(PartByPoints, DistancesAreThoseOfTheGearThatThePointsAreOf) {
+  const auto octoid = narrow_bevel(straight_bevel::Form::octoid);
+  auto helical = left_helical();
+  helical.zones = {{radians(-18), 4, 9}};
+  const struct {
+    flank_grid::FlankGridParameters grid;
+    std::shared_ptr<const tooth_space::ToothedPart> plain;
+  } cases[] = {
+      {sampled(octoid, {9, 7, 0.75}), straight_bevel::part_of(straight_bevel::StraightBevelGear::make(octoid).value())},
+      {sampled(helical, {9, 7, 0.7}), cylindrical::part_of(made(helical))}};
+  for (const auto& one : cases) {
+    const auto gear = flank_grid::FlankGridGear::make(one.grid);
+    ASSERT_TRUE(gear) << gear.error().front().diagnostic.message;
+    const analytic::GearDistance grid(flank_grid::part_of(*gear), 1.5), plain(one.plain, 1.5);
+    ASSERT_FALSE(grid.refusal()) << grid.refusal()->diagnostic.message;
+    EXPECT_EQ(grid.unproven(), 0u);
+    const double allowed = *gear->quality().spacing_mm + 1e-6;
+    Random random(13);
+    int compared = 0;
+    const auto& ring = one.plain->space(0).outline();
+    for (int n = 0; n < 400; ++n) {
+      const Vec3 c = ring.chart.place(random(ring.s_from - 1, ring.s_to + 1), random(-kPi, kPi),
+                                      random(one.plain->lowest_root(), one.plain->blank_top() + 1));
+      const auto a = grid.nearest(c, 1), b = plain.nearest(c, 1);
+      const auto known = [](const analytic::NearestPlace& q) {  // the others meet fillets
+        const std::string patch = q.patch;
+        return q.distance < 0.99 && (patch.starts_with("flank") || patch.starts_with("tip"));
+      };
+      if (!known(a) || !known(b)) continue;
+      EXPECT_NEAR(std::max(a.distance, 0.0), std::max(b.distance, 0.0), allowed) << c.transpose() << " " << a.patch;
+      ++compared;
+    }
+    EXPECT_GT(compared, 80);
+  }
+}
 
 path::MillingOperation operation(path::OperationType type, int tool) {
   path::MillingOperation o;

@@ -61,6 +61,16 @@ TEST(TensorSpline, BendsOnWithoutAJump) {
             1e-3);
 }
 
+/// With fewer than six rows or columns nothing can be left out.
+TEST(FlankGridSpacing, IsNotKnownOfTooFewPoints) {
+  for (const auto& [rows, columns, known] :
+       {std::tuple{6, 6, true}, std::tuple{5, 9, false}, std::tuple{9, 5, false}}) {
+    const auto gear = FlankGridGear::make(sampled(shifted_spur(), {rows, columns, 1.2}));
+    ASSERT_TRUE(gear);
+    EXPECT_EQ(gear->quality().spacing_mm.has_value(), known) << rows << " " << columns;
+  }
+}
+
 struct Case {
   const char* name;
   FlankGridParameters grid;
@@ -259,6 +269,10 @@ TEST_F(FlankGrid, EveryLimitIsRefusedByItsKey) {
       {"points", "have the length", [](auto& g) { g.minus.normal[13] *= 2; }},
       {"points", "folds", [](auto& g) { std::swap(g.plus.place[20], g.plus.place[21]); }},
       {"points", "from the one before", [](auto& g) { g.plus.place[20] = g.plus.place[21]; }},
+      {"points", "another unit",
+       [](auto& g) {
+         for (auto& p : g.plus.place) p /= 25.4;
+       }},
       {"points", "ratio", [](auto& g) { g.plus.place[20] = 0.05 * g.plus.place[19] + 0.95 * g.plus.place[21]; }},
       {"points", "from the root to the tip",
        [&](auto& g) {

@@ -13,6 +13,7 @@ struct Sampling {
   double ball_mm = 1;
   bool falling = false;  ///< columns and meridians run against s
   double turn = 0;       ///< of everything about the axis, rad
+  double below = 0;      ///< share of the height that rows begin below the end of the flank
 };
 
 /// The flanks of a space from fillet to tip and from end to end, its root and tip.
@@ -42,7 +43,8 @@ inline flank_grid::FlankGridParameters sampled(const tooth_space::ToothSpace& sp
     for (int i = 0; i < ask.rows; ++i)
       for (int j = 0; j < ask.columns; ++j) {
         const double s = station(j, ask.columns), tip = space.tip_edge(side, s)->u;
-        const auto q = tooth_space::place_at(space, piece, foot + (tip - foot) * i / (ask.rows - 1), s);
+        const auto q = tooth_space::place_at(
+            space, piece, foot + (tip - foot) * ((1 + ask.below) * i / (ask.rows - 1) - ask.below), s);
         out.place.push_back(turned(q->p, ask.turn));
         out.normal.push_back(turned(q->n, ask.turn));
       }

@@ -5,10 +5,13 @@
 #include <random>
 
 #include "geometry/cylindrical/part.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/mesh/cgal_check.h"
 #include "geometry/mesh/tooth_mesh.h"
 #include "tests/geometry/cylindrical/samples.h"
+#include "tests/geometry/flank_grid/samples.h"
 #include "tests/geometry/straight_bevel/samples.h"
+#include "tests/support/sample_gears.h"
 
 namespace toothpath::test {
 namespace {
@@ -139,6 +142,26 @@ TEST_P(AnyGearMesh, EveryFacetLiesWithinItsSagOfTheExactSurface) {
 INSTANTIATE_TEST_SUITE_P(Samples, AnyGearMesh, testing::ValuesIn(meshed_cylinders()),
                          [](const auto& at) { return at.param.name; });
 
+void is_one_closed_body(const tooth_space::ToothedSolid& solid, const std::string& name) {
+  const auto pitch = mesh::mesh_tooth_space(solid, 0.02);
+  ASSERT_TRUE(pitch) << name << ": " << pitch.error().message;
+  const auto check = mesh::check_mesh(mesh::join_copies(*pitch));
+  ASSERT_TRUE(check) << name << ": " << check.error().message;
+  EXPECT_TRUE(check->is_solid()) << name << ": " << check->self_intersections << " crossings";
+  EXPECT_EQ(check->components, 1u) << name;
+  EXPECT_GT(check->volume_mm3, 0) << name;
+  EXPECT_LE(pitch->max_sag(), 0.02) << name;
+  for (std::size_t t = 0; t < pitch->tags.size(); t += 7) {
+    const mesh::TriangleTag& tag = pitch->tags[t];
+    if (int(tag.patch) >= tooth_space::kPieces) continue;
+    const Vec3 middle = (pitch->mesh.corner(t, 0) + pitch->mesh.corner(t, 1) + pitch->mesh.corner(t, 2)) / 3;
+    const Vec2 uv = (tag.uv[0] + tag.uv[1] + tag.uv[2]) / 3;
+    const auto foot = solid.rings[0].space->foot(tag.patch, middle, uv.x(), uv.y());
+    ASSERT_TRUE(foot) << name;
+    EXPECT_LE(std::abs(foot->distance), pitch->max_sag_mm[std::size_t(tag.patch)] + 1e-12) << name;
+  }
+}
+
 /// Teeth on a cone, with bore, with hub, and without either.
 TEST(StraightBevelMesh, IsOneClosedBodyOnItsExactSurface) {
   for (const int kind : {0, 1, 2}) {
@@ -146,24 +169,34 @@ TEST(StraightBevelMesh, IsOneClosedBodyOnItsExactSurface) {
     if (kind == 1) g.hub_diameter_mm = 36, g.hub_length_mm = 8;
     if (kind == 2) g.bore_diameter_mm = 0;
     const auto gear = straight_bevel::StraightBevelGear::make(g).value();
-    const tooth_space::ToothedSolid solid = drawn_solid(gear);
-    const auto pitch = mesh::mesh_tooth_space(solid, 0.02);
-    ASSERT_TRUE(pitch) << pitch.error().message;
-    const auto check = mesh::check_mesh(mesh::join_copies(*pitch));
-    ASSERT_TRUE(check) << check.error().message;
-    EXPECT_TRUE(check->is_solid()) << kind << ": " << check->self_intersections << " crossings";
-    EXPECT_EQ(check->components, 1u);
-    EXPECT_GT(check->volume_mm3, 0);
-    EXPECT_LE(pitch->max_sag(), 0.02);
-    for (std::size_t t = 0; t < pitch->tags.size(); t += 7) {
-      const mesh::TriangleTag& tag = pitch->tags[t];
-      if (int(tag.patch) >= tooth_space::kPieces) continue;
-      const Vec3 middle = (pitch->mesh.corner(t, 0) + pitch->mesh.corner(t, 1) + pitch->mesh.corner(t, 2)) / 3;
-      const Vec2 uv = (tag.uv[0] + tag.uv[1] + tag.uv[2]) / 3;
-      const auto foot = gear.space().foot(tag.patch, middle, uv.x(), uv.y());
-      ASSERT_TRUE(foot);
-      EXPECT_LE(std::abs(foot->distance), pitch->max_sag_mm[std::size_t(tag.patch)] + 1e-12);
-    }
+    is_one_closed_body(drawn_solid(gear), fmt::format("{}", kind));
+  }
+}
+
+/// Gears by points on a cylinder, a cone and a plane, which looks up and down.
+TEST(FlankGridMesh, IsOneClosedBodyOnItsExactSurface) {
+  const auto small = face_gear::part_of(face_gear::FaceGear::make(small_spur()).value());
+  const auto face = sampled(small->space(0), small->teeth(), {7, 7, 0.6, false, 0, 0.1});
+  auto down = face;
+  std::swap(down.plus, down.minus);
+  for (auto* flank : {&down.plus, &down.minus})
+    for (auto* list : {&flank->place, &flank->normal})
+      for (Vec3& p : *list) p = {p.x(), -p.y(), -p.z()};
+  for (auto* line : {&down.root, &down.tip})
+    for (Vec2& p : *line) p.y() = -p.y();
+  const auto bevel = sampled(khk_pinion(), {7, 7, 0.75, true});
+  const std::tuple<const char*, flank_grid::FlankGridParameters, bool> all[] = {
+      {"spur", sampled(shifted_spur(), {7, 7, 1.2}), true},
+      {"bevel", bevel, false},
+      {"face", face, false},
+      {"down", down, true}};
+  for (const auto& [name, grid, hub] : all) {
+    auto g = grid;
+    g.bore_diameter_mm = 16;
+    if (hub) g.hub_diameter_mm = 36, g.hub_length_mm = 8;
+    const auto gear = flank_grid::FlankGridGear::make(g);
+    ASSERT_TRUE(gear) << name << ": " << gear.error().front().diagnostic.message;
+    is_one_closed_body(drawn_solid(*gear), name);
   }
 }
 
