@@ -18,7 +18,7 @@ std::string limits_json(const SpiralBevelGear& gear) {
                                 {"outer_transverse_module", gear.body().module_mm},
                                 {"mean_space_width", gear.space_width_mm()}};
   milled::add_blank(out, gear.space());
-  nlohmann::ordered_json zone = milled::bevel_zone(gear.space());
+  nlohmann::ordered_json zone = milled::ring_zone(gear.space());
   for (auto& flank : zone["flanks"]) flank["spiral_angle"] = degrees(gear.spiral_angle(flank["side"].get<int>()));
   out["zones"] = nlohmann::ordered_json::array({std::move(zone)});
   return json_text(out, 2) + "\n";

@@ -8,7 +8,7 @@
 
 namespace toothpath::spiral_bevel {
 
-/// limits.json: the zone as of every bevel gear (milled::bevel_zone), and what the settings make: the width of the
+/// limits.json: the zone as of every bevel gear (milled::ring_zone), and what the settings make: the width of the
 /// space and the spiral angles on the pitch cone in the middle of the face.
 [[nodiscard]] std::string limits_json(const SpiralBevelGear& gear);
 
