@@ -106,8 +106,10 @@ std::optional<RolledBall> RolledBall::roll(const Flank& flank, const Meridian& r
                                            double middle, double v_to) {
   // Pieces begin and end where those of the spline do.
   std::vector<double> stations{v_from, v_to, middle};
+  // Beside one of these places, which rounding may part from it, none begins: it would have no length.
+  const double least = 1e-6 * (v_to - v_from);
   for (const double v : flank.spline.breaks_v())
-    if (v > v_from && v < v_to) stations.push_back(v);
+    if (v > v_from + least && v < v_to - least && std::abs(v - middle) > least) stations.push_back(v);
   std::sort(stations.begin(), stations.end());
   stations.erase(std::unique(stations.begin(), stations.end()), stations.end());
   const auto at = std::find(stations.begin(), stations.end(), middle);

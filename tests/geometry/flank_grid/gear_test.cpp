@@ -71,6 +71,24 @@ TEST(FlankGridSpacing, IsNotKnownOfTooFewPoints) {
   }
 }
 
+/// A column in the middle of the face, beside it by rounding, makes no piece of the ball's curve without length.
+TEST(FlankGridMiddle, EnclosuresAreNarrowThere) {
+  auto helical = left_helical();
+  for (const auto& [from, to] : {std::pair{-4.0, 4.0}, {3.1, 8.7}, {0.3, 7.9}, {-5.7, 2.2}}) {
+    helical.zones = {{radians(-18), from, to}};
+    const auto gear = FlankGridGear::make(sampled(helical, {9, 9, 0.7}));
+    ASSERT_TRUE(gear) << gear.error().front().diagnostic.message;
+    for (int piece = 0; piece < tooth_space::kPieces; ++piece) {
+      tooth_space::PatchFrame frame;
+      frame.origin = {0.5, -0.5 * (from + to)};
+      const auto jet = gear->space().enclosure(Piece(piece), frame, 0.01, 0.01);
+      ASSERT_TRUE(jet);
+      for (const auto& second : jet->second)
+        for (const Interval& x : second) EXPECT_LT(x.magnitude(), 100) << piece << " " << from;
+    }
+  }
+}
+
 struct Case {
   const char* name;
   FlankGridParameters grid;
