@@ -175,8 +175,7 @@ std::string summary_table(const RunReport& report, bool color) {
   const std::string left = unfinished_text(report);
   const std::string verdict = report.verified ? with(report, "yes") : "NO";
   const char* paint = !report.verified ? "\033[31m" : !left.empty() ? "\033[33m" : "\033[32m";
-  if (report.command != "surface")
-    row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : verdict);
+  if (report.command != "surface") row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : verdict);
   for (const auto& reason : report.reasons) row(out, "  because", reason);
   for (const auto& help : report.would_help) row(out, "  would help", help);
   if (!left.empty()) row(out, "not finished", left);

@@ -105,6 +105,7 @@ double FingerSolid::lower_surface(double rho) const {
   return c_.flank(p).x;
 }
 
+// Long because the pieces of one profile are asked in turn, and each has its own search.
 double FingerSolid::signed_distance(double x, double rho) const {
   double best = std::numeric_limits<double>::infinity();
   const auto take = [&best](double d) {

@@ -62,7 +62,8 @@ struct CutFlank {
     return sum;
   }
 
-  /// Place and normal out of the gear. False: the profile touches nowhere at this roll.
+  /// Place and normal out of the gear. False: the profile touches nowhere at this roll. Long because it is one chain of
+  /// formulas from the blade to the gear, each of which needs the ones before.
   template <typename S_>
   bool place(bool fillet, const S_& u, const S_& v, Vec3T<S_>& p, Vec3T<S_>& n) const {
     using std::cos, std::sin, std::sqrt;

@@ -165,6 +165,7 @@ double asked_space_width(const SpiralBevelParameters& gear) {
          0.5 * gear.backlash_mm.value_or(0) * R_m / gear.outer_cone_distance_mm;
 }
 
+// Long because each cut is set up in steps that need the results of the ones before, with a refusal of its own each.
 Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear) {
   SetUp out;
   CutterKernel& k = out.kernel;

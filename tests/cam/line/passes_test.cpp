@@ -436,8 +436,8 @@ TEST(LinePlans, Refusals) {
   refused(line::plan_line_milling(kept(gear), std::get<tool::Profile>(tool::Profile::make(flat)), finishing()),
           "needs a tool with a ball end");
   auto o = finishing();
-  o.strips = 9;
-  refused(line::plan_line_milling(kept(gear), mill(0.5, 5, 4, 4, 22), o), "strips = 9 lies outside 1 .. 4");
+  o.strips = 25;
+  refused(line::plan_line_milling(kept(gear), mill(0.5, 5, 4, 4, 22), o), "strips = 25 lies outside 1 .. 24");
 }
 
 // The same bits with one thread and with several; the time is printed, for busy machines cannot promise it.

@@ -87,8 +87,11 @@ TEST(WallKernel, PiecesJoinWithOneNormal) {
                                    {Piece::fillet_minus, Piece::flank_minus}}) {
           const auto before = space.at(a, space.borders(a).to, v), after = space.at(b, space.borders(b).from, v);
           ASSERT_TRUE(before && after);
-          EXPECT_LT((before->p - after->p).norm(), 1e-10) << to_string(a);
-          EXPECT_LT((before->n - after->n).norm(), 1e-11) << to_string(a);
+          // Where the mill's path runs along the generatrix fillets end a little above the root.
+          const bool flat =
+              space.kernel().least_turn() < WallKernel::kLeastTurn && (a == Piece::root || b == Piece::root);
+          EXPECT_LT((before->p - after->p).norm(), flat ? 1e-3 : 1e-10) << to_string(a);
+          EXPECT_LT((before->n - after->n).norm(), flat ? 0.02 : 1e-11) << to_string(a);
         }
       }
     }
