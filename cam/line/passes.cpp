@@ -18,6 +18,8 @@ constexpr double kFull = 0.85;   // share of the height from which a station cou
 constexpr double kEndSlopes[] = {
     0.7, 0.3, 1.0, 1.4};            // shares of the slope at the last full station with which angles go on beyond it
 constexpr double kShortest = 1e-3;  // of a module: shortest block
+constexpr double kMostTurn =
+    radians(20);  // of the axis about the gear's: near that pole a rotary turns far in short blocks
 constexpr double kGougeCounts =
     4;                            // times as much as what is left: a block may sink by a quarter of the chord tolerance
 constexpr double kCorner = 1e-5;  // mm: place of the records at which the ring begins and ends
@@ -467,7 +469,8 @@ class PassPlanner {
       const auto next = pose(s);
       if (!next) return lost(s);
       const double worst = std::max({stray(*here, *next, 0.25), stray(*here, *next, 0.5), stray(*here, *next, 0.75)});
-      if (worst > o_.chord_mm && step > kShortest * m_) {
+      const double turn = std::abs(std::remainder(azimuth(next->axis.a) - azimuth(here->axis.a), 2 * kPi));
+      if ((worst > o_.chord_mm || turn > kMostTurn) && step > kShortest * m_) {
         step *= 0.5;
         continue;
       }

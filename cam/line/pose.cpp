@@ -144,7 +144,9 @@ Result<FlankTask> flank_task(const tooth_space::ToothedPart& part, int zone, int
                 outline.sign * middle);
   t.mm_per_u = std::copysign(end->pu.norm(), (side > 0 ? borders.from : borders.to) - t.u_end);
   t.upright = wants_upright(t);
-  if (const auto depth = t.upright ? tooth_space::flank_depth(*t.space, side) : std::nullopt; depth) t.deep = *depth;
+  const bool on_a_cone = t.chart().sine != 0 && t.chart().cosine != 0;
+  if (t.upright || on_a_cone)
+    if (const auto depth = tooth_space::flank_depth(*t.space, side)) t.deep = *depth;
   return t;
 }
 

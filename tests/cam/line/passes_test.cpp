@@ -13,6 +13,7 @@
 #include "cam/line/plan.h"
 #include "cam/line/smooth.h"
 #include "tests/cam/line/line_cases.h"
+#include "tests/geometry/spiral_bevel/samples.h"
 #include "tests/support/brute_force_bodies.h"
 #include "tests/support/brute_force_line.h"
 #include "tests/support/random.h"
@@ -483,6 +484,24 @@ TEST(Smooth, KeepsParabolasAndCalmsNoise) {
     EXPECT_NEAR(curve.at(5 + 0.5 * (k + 0.5)), 1 + 0.3 * (k + 0.5) - 0.01 * (k + 0.5) * (k + 0.5), 1e-12);
   }
   EXPECT_NEAR(curve.at(4.5), 1 - (parabola[1] - parabola[0]), 1e-12);
+}
+
+/// Teeth on a cone taper, and so do their strips: the anchors of the lowest stay on the flank beyond the small end. A
+/// mill that leans over such a tooth comes near the gear's axis: blocks are short where its azimuth turns fast.
+TEST(LinePassesOnACone, LowStripsReachTheSmallEndAndTurnInShortBlocks) {
+  const auto part = part_of(spiral_bevel::SpiralBevelGear::make(nasa_gear()).value());
+  for (const int side : {1, -1}) {
+    const auto task = line::flank_task(*part, 0, side).value();
+    const auto pass = line::plan_pass(line::LineFit(task, tapered(0.6, 4), line::strips_of(task, 4)[3]), {}, 100);
+    ASSERT_TRUE(pass) << pass.error().message;
+    EXPECT_LT(pass->records.front().s, task.s_from);
+    EXPECT_GT(pass->records.back().s, task.s_to);
+    EXPECT_LT(pass->misfit_mm, 0.006);
+    for (std::size_t k = 1; k < pass->records.size(); ++k)
+      EXPECT_LT(
+          std::abs(std::remainder(azimuth(pass->records[k].axis.a) - azimuth(pass->records[k - 1].axis.a), 2 * kPi)),
+          radians(21));
+  }
 }
 
 }  // namespace
