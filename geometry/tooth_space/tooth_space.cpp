@@ -1,6 +1,7 @@
 #include "geometry/tooth_space/tooth_space.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace toothpath::tooth_space {
@@ -22,8 +23,17 @@ bool stays(const Interval& slope, double step, double way, double slack) {
          std::max(0.0, moves.high) <= std::max(0.0, way) + slack;
 }
 
-std::optional<CurveBend> azimuth_of_edge(const ToothSpace& space, int side, const EdgePlace& from, double s_from,
-                                         const EdgePlace& to, double s_to, int halvings) {
+/// How far the bounds may lie apart; looser ones are sought in halves.
+struct Spread {
+  double slope = 0, bend = 0;
+  [[nodiscard]] bool holds(const CurveBend& curve) const {
+    return curve.slope.high - curve.slope.low <= slope && curve.bend.high - curve.bend.low <= bend;
+  }
+};
+
+/// In one box about the stretch.
+std::optional<CurveBend> azimuth_in_box(const ToothSpace& space, int side, const EdgePlace& from, double s_from,
+                                        const EdgePlace& to, double s_to) {
   const Chart& chart = space.outline().chart;
   const CurveBend tip = space.tip_bend(s_from, s_to);
   const Vec2 a(from.u, from.v), b(to.u, to.v), way = b - a;
@@ -62,13 +72,20 @@ std::optional<CurveBend> azimuth_of_edge(const ToothSpace& space, int side, cons
     const Interval bend = (x * bent_edge(1) - y * bent_edge(0)) / q - Interval(2) * slope * (x * x1 + y * y1) / q;
     if (slope.finite() && bend.finite()) return CurveBend{slope, bend};
   }
-  if (halvings == 0) return {};
+  return {};
+}
+
+std::optional<CurveBend> azimuth_of_edge(const ToothSpace& space, int side, const EdgePlace& from, double s_from,
+                                         const EdgePlace& to, double s_to, const Spread& spread, int halvings) {
+  const auto whole = azimuth_in_box(space, side, from, s_from, to, s_to);
+  if (halvings == 0 || (whole && spread.holds(*whole))) return whole;
   const double s_middle = 0.5 * (s_from + s_to);
   const auto middle = space.tip_edge(side, s_middle, from);
-  if (!middle) return {};
-  const auto first = azimuth_of_edge(space, side, from, s_from, *middle, s_middle, halvings - 1);
-  const auto second = first ? azimuth_of_edge(space, side, *middle, s_middle, to, s_to, halvings - 1) : std::nullopt;
-  if (!second) return {};
+  if (!middle) return whole;
+  const auto first = azimuth_of_edge(space, side, from, s_from, *middle, s_middle, spread, halvings - 1);
+  const auto second =
+      first ? azimuth_of_edge(space, side, *middle, s_middle, to, s_to, spread, halvings - 1) : std::nullopt;
+  if (!second) return whole;
   return CurveBend{hull(first->slope, second->slope), hull(first->bend, second->bend)};
 }
 
@@ -76,8 +93,14 @@ std::optional<CurveBend> azimuth_of_edge(const ToothSpace& space, int side, cons
 
 std::optional<CurveBend> ToothSpace::tip_azimuth(int side, const EdgePlace& from, double s_from, const EdgePlace& to,
                                                  double s_to) const {
-  constexpr int kHalvings = 4;
-  return azimuth_of_edge(*this, side, from, s_from, to, s_to, kHalvings);
+  constexpr int kHalvings = 6;
+  constexpr double kLoose = 2e-4;  // mm: of how far the edge leaves its chord, by what its bounds lie apart
+  // The edge leaves its chord by an eighth of step^2 times radius (slope^2 + bend).
+  const double s = 0.5 * (s_from + s_to), step = s_to - s_from, r = outline().chart.r(s, tip(s)),
+               most = 8 * kLoose / (step * step * r), slope = std::abs(to.azimuth - from.azimuth) / std::abs(step);
+  // (slope + x)^2 - slope^2 = most / 2
+  const Spread spread{std::sqrt(slope * slope + 0.5 * most) - slope, 0.5 * most};
+  return azimuth_of_edge(*this, side, from, s_from, to, s_to, spread, kHalvings);
 }
 
 }  // namespace toothpath::tooth_space
