@@ -33,6 +33,35 @@ double bend_between(const FingerProfile<double>& c, double from, double to) {
   return kBendMargin * most;
 }
 
+/// Signed distance of a meridian point to the involute CD (or the flank of its law), where a foot of the perpendicular
+/// lies on it: f = (P - Q) . t = 0. The profile is hollow with radius r_vb tan(alpha_k).
+std::optional<double> above_flank(const FingerProfile<double>& c, double x, double rho) {
+  double p = std::clamp((x * c.cos_a + (rho - c.r_0) * c.sin_a) / c.sin_a, c.p_C, c.p_D);
+  double low = c.p_C, high = c.p_D;
+  for (int k = 0; k < 60; ++k) {
+    const auto q = c.flank(p);
+    const double dx = x - q.x, dr = rho - q.rho;
+    const double f = dx * q.cos_psi + dr * q.sin_psi, normal = -dx * q.sin_psi + dr * q.cos_psi;
+    const double slope = -q.dS + normal * q.dpsi;
+    if (!(slope < 0)) return {};
+    const double newton = p - f / slope;
+    double next = std::clamp(newton, c.p_C, c.p_D);
+    // The distance changes by f times the turn of the normal: by nothing.
+    if (!c.law && next == newton && std::abs(next - p) <= kLastStep * (1 + c.r_0)) return normal;
+    if (c.law) {  // its bend jumps: the foot stays between what was found on both sides of it
+      (f > 0 ? low : high) = p;
+      if (!(next > low && next < high)) next = 0.5 * (low + high);
+    }
+    const double step = next - p;
+    p = next;
+    if (std::abs(step) > 1e-13 * (1 + c.r_0)) continue;
+    const auto s = c.flank(p);
+    if (std::abs((x - s.x) * s.cos_psi + (rho - s.rho) * s.sin_psi) > 1e-9 * (1 + c.r_0)) return {};
+    return -(x - s.x) * s.sin_psi + (rho - s.rho) * s.cos_psi;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<double> flank_joints(const FingerProfile<double>& c) {
@@ -105,7 +134,6 @@ double FingerSolid::lower_surface(double rho) const {
   return c_.flank(p).x;
 }
 
-// Long because the pieces of one profile are asked in turn, and each has its own search.
 double FingerSolid::signed_distance(double x, double rho) const {
   double best = std::numeric_limits<double>::infinity();
   const auto take = [&best](double d) {
@@ -123,40 +151,7 @@ double FingerSolid::signed_distance(double x, double rho) const {
     const double t = (x - c_.x_C) * c_.cos_phi + (rho - c_.rho_C) * c_.sin_phi;
     if (t <= 0 && t >= c_.p_B - c_.p_C) take(-(x - c_.x_C) * c_.sin_phi + (rho - c_.rho_C) * c_.cos_phi);
   }
-  // Involute CD: foot of the perpendicular, f = (P - Q) . t = 0. The profile is hollow with radius r_vb tan(alpha_k).
-  {
-    double p = std::clamp((x * c_.cos_a + (rho - c_.r_0) * c_.sin_a) / c_.sin_a, c_.p_C, c_.p_D);
-    double normal = 0, low = c_.p_C, high = c_.p_D;
-    bool foot = false;
-    for (int k = 0; k < 60; ++k) {
-      const auto q = c_.flank(p);
-      const double dx = x - q.x, dr = rho - q.rho;
-      const double f = dx * q.cos_psi + dr * q.sin_psi;
-      normal = -dx * q.sin_psi + dr * q.cos_psi;
-      const double slope = -q.dS + normal * q.dpsi;
-      if (!(slope < 0)) break;
-      const double newton = p - f / slope;
-      double next = std::clamp(newton, c_.p_C, c_.p_D);
-      // The distance changes by f times the turn of the normal: by nothing.
-      if (!c_.law && next == newton && std::abs(next - p) <= kLastStep * (1 + c_.r_0)) {
-        foot = true;
-        break;
-      }
-      if (c_.law) {  // its bend jumps: the foot stays between what was found on both sides of it
-        (f > 0 ? low : high) = p;
-        if (!(next > low && next < high)) next = 0.5 * (low + high);
-      }
-      const double step = next - p;
-      p = next;
-      if (std::abs(step) <= 1e-13 * (1 + c_.r_0)) {
-        const auto s = c_.flank(p);
-        normal = -(x - s.x) * s.sin_psi + (rho - s.rho) * s.cos_psi;
-        foot = std::abs((x - s.x) * s.cos_psi + (rho - s.rho) * s.sin_psi) <= 1e-9 * (1 + c_.r_0);
-        break;
-      }
-    }
-    if (foot) take(normal);
-  }
+  if (const auto d = above_flank(c_, x, rho)) take(*d);
   // Cylinder and the edge D, which is convex: a point whose nearest point is the edge lies outside.
   if (x >= c_.x_D) take(rho - c_.rho_D);
   const double edge = std::hypot(x - c_.x_D, rho - c_.rho_D);

@@ -62,83 +62,101 @@ struct CutFlank {
     return sum;
   }
 
-  /// Place and normal out of the gear. False: the profile touches nowhere at this roll. Long because it is one chain of
-  /// formulas from the blade to the gear, each of which needs the ones before.
+  /// A point of the profile: radius and height above the tip plane; its normal, out of the cutter; the slope of that
+  /// against the tip plane, and where it meets that plane, as a radius.
+  template <typename S_>
+  struct ProfilePoint {
+    S_ rho, zeta, across, down, slope, foot;
+  };
+  template <typename S_>
+  [[nodiscard]] ProfilePoint<S_> profile(bool fillet, const S_& u) const {
+    using std::cos, std::sin;
+    if (fillet) {
+      const S_ c = cos(u), down = sin(u), slope = S_(out) * c / down;
+      return {S_(rho_c) + S_(out * edge) * c, S_(edge) * (S_(1.0) - down), S_(out) * c, down, slope,
+              S_(rho_c) + S_(edge) * slope};
+    }
+    return {S_(rho_0) + S_(out * sin_a) * u, S_(cos_a) * u, S_(out * cos_a), S_(sin_a), S_(out * cos_a / sin_a),
+            S_(rho_0) + S_(out / sin_a) * u};
+  }
+
+  /// The cutter in the machine: the centre of its tip circle, two directions square to its axis, and the axis.
+  template <typename S_>
+  struct Cradled {
+    Vec3T<S_> Q, e_1, e_2, axis;
+  };
+  template <typename S_>
+  [[nodiscard]] Cradled<S_> cradled(const S_& phi) const {
+    using std::cos, std::sin;
+    using V = Vec3T<S_>;
+    const S_ c = cos(phi), s = sin(phi);
+    const auto leant = [&](const V& x) {
+      if (!tilted) return x;
+      const V y(c * x[0] + s * x[1], c * x[1] - s * x[0], x[2]);
+      V z;
+      for (int i = 0; i < 3; ++i) z[i] = S_(tilt(i, 0)) * y[0] + S_(tilt(i, 1)) * y[1] + S_(tilt(i, 2)) * y[2];
+      return V(c * z[0] - s * z[1], s * z[0] + c * z[1], z[2]);
+    };
+    return {V(S_(S) * c, S_(S) * s, S_(0.0)), leant(V(S_(1.0), S_(0.0), S_(0.0))), leant(V(S_(0.0), S_(1.0), S_(0.0))),
+            leant(V(S_(0.0), S_(0.0), S_(1.0)))};
+  }
+
+  /// Cosine and sine of the place on its circle at which a point of the profile touches the gear; nothing: nowhere.
+  template <typename S_>
+  [[nodiscard]] std::optional<std::array<S_, 2>> touching(const ProfilePoint<S_>& point, const Cradled<S_>& at,
+                                                          const S_& ratio) const {
+    using std::sqrt;
+    using V = Vec3T<S_>;
+    // Velocity of the cutter against the gear: W x P + V, of its tip circle's centre: G.
+    const S_ W_x = ratio * S_(cos_g), W_z = S_(1.0) - ratio * S_(sin_g);
+    const V G(ratio * S_(moment.x()) - W_z * at.Q[1], ratio * S_(moment.y()) + W_z * at.Q[0],
+              ratio * S_(moment.z()) + W_x * at.Q[1]);
+    S_ A, B, D;  // n.v = 0, by the part of the normal along the axis
+    if (tilted) {
+      const V& axis = at.axis;
+      const V H(-(W_z * axis[1]), W_z * axis[0] - W_x * axis[2], W_x * axis[1]);
+      const V F = G * point.slope + H * point.foot;
+      A = F.dot(at.e_1);
+      B = F.dot(at.e_2);
+      D = -axis.dot(G);
+    } else {
+      A = point.slope * G[0];
+      B = point.slope * G[1] - point.foot * W_x;
+      D = -G[2];
+    }
+    const S_ size = A * A + B * B, rest = size - D * D;
+    if (rest < S_(0.0) || size <= S_(0.0)) return {};
+    const S_ root = S_(branch) * sqrt(rest);
+    return std::array<S_, 2>{-(D * A + root * B) / size, (root * A - D * B) / size};
+  }
+
+  /// Place and normal out of the gear. False: the profile touches nowhere at this roll.
   template <typename S_>
   bool place(bool fillet, const S_& u, const S_& v, Vec3T<S_>& p, Vec3T<S_>& n) const {
-    using std::cos, std::sin, std::sqrt;
+    using std::cos, std::sin;
     using V = Vec3T<S_>;
-    // Radius and height above the tip plane; the normal, out of the cutter; its slope against the tip plane, and where
-    // it meets that plane, as a radius.
-    S_ rho, zeta, across, down, slope, foot;
-    if (fillet) {
-      const S_ c = cos(u);
-      down = sin(u);
-      across = S_(out) * c;
-      rho = S_(rho_c) + S_(out * edge) * c;
-      zeta = S_(edge) * (S_(1.0) - down);
-      slope = across / down;
-      foot = S_(rho_c) + S_(edge) * slope;
-    } else {
-      rho = S_(rho_0) + S_(out * sin_a) * u;
-      zeta = S_(cos_a) * u;
-      across = S_(out * cos_a);
-      down = S_(sin_a);
-      slope = S_(out * cos_a / sin_a);
-      foot = S_(rho_0) + S_(out / sin_a) * u;
-    }
+    const ProfilePoint<S_> point = profile(fillet, u);
     const S_ t = parameter(v);
     const Turned<S_> turned_by = generated ? work(t) : Turned<S_>{S_(0.0), S_(0.0)};
-    const S_ phi = generated ? S_(S_(q) + t) : S_(q), c_phi = cos(phi), s_phi = sin(phi);
-    const V Q(S_(S) * c_phi, S_(S) * s_phi, S_(0.0));
-    // Directions of the cutter: two square to its axis, and the axis.
-    V e_1(S_(1.0), S_(0.0), S_(0.0)), e_2(S_(0.0), S_(1.0), S_(0.0)), axis(S_(0.0), S_(0.0), S_(1.0));
-    if (tilted) {
-      const auto leant = [&](const V& x) {
-        const V y(c_phi * x[0] + s_phi * x[1], c_phi * x[1] - s_phi * x[0], x[2]);
-        V z;
-        for (int i = 0; i < 3; ++i) z[i] = S_(tilt(i, 0)) * y[0] + S_(tilt(i, 1)) * y[1] + S_(tilt(i, 2)) * y[2];
-        return V(c_phi * z[0] - s_phi * z[1], s_phi * z[0] + c_phi * z[1], z[2]);
-      };
-      e_1 = leant(e_1);
-      e_2 = leant(e_2);
-      axis = leant(axis);
-    }
-    S_ c, s;  // of the place on the circle
+    const Cradled<S_> cutter = cradled(generated ? S_(S_(q) + t) : S_(q));
+    std::array<S_, 2> on_circle;
     if (generated) {
-      // Velocity of the cutter against the gear: W x P + V, of its tip circle's centre: G.
-      const S_ &ratio = turned_by.ratio, W_x = ratio * S_(cos_g), W_z = S_(1.0) - ratio * S_(sin_g);
-      const V G(ratio * S_(moment.x()) - W_z * Q[1], ratio * S_(moment.y()) + W_z * Q[0],
-                ratio * S_(moment.z()) + W_x * Q[1]);
-      S_ A, B, D;  // n.v = 0, by the part of the normal along the axis
-      if (tilted) {
-        const V H(-(W_z * axis[1]), W_z * axis[0] - W_x * axis[2], W_x * axis[1]);
-        const V F = G * slope + H * foot;
-        A = F.dot(e_1);
-        B = F.dot(e_2);
-        D = -axis.dot(G);
-      } else {
-        A = slope * G[0];
-        B = slope * G[1] - foot * W_x;
-        D = -G[2];
-      }
-      const S_ size = A * A + B * B, rest = size - D * D;
-      if (rest < S_(0.0) || size <= S_(0.0)) return false;
-      const S_ root = S_(branch) * sqrt(rest);
-      c = -(D * A + root * B) / size;
-      s = (root * A - D * B) / size;
+      const auto touches = touching(point, cutter, turned_by.ratio);
+      if (!touches) return false;
+      on_circle = *touches;
     } else {
-      c = cos(t);
-      s = sin(t);
+      on_circle = {cos(t), sin(t)};
     }
-    const V outwards = e_1 * c + e_2 * s;
-    const V at = Q + outwards * rho + axis * zeta, normal = axis * down - outwards * across;
+    const V outwards = cutter.e_1 * on_circle[0] + cutter.e_2 * on_circle[1];
+    const V at = cutter.Q + outwards * point.rho + cutter.axis * point.zeta,
+            normal = cutter.axis * point.down - outwards * point.across;
     const TurnT<S_> back(S_(turned_by.angle + S_(turn)));
-    const V in_gear(S_(sin_g) * at[0] + S_(cos_g) * at[2], -at[1], S_(cos_g) * at[0] - S_(sin_g) * at[2]);
-    const V n_gear(S_(sin_g) * normal[0] + S_(cos_g) * normal[2], -normal[1],
-                   S_(cos_g) * normal[0] - S_(sin_g) * normal[2]);
-    p = back(V(in_gear[0] + S_(centre.x()), in_gear[1] + S_(centre.y()), in_gear[2] + S_(centre.z())));
-    n = back(n_gear);
+    const auto in_gear = [&](const V& x) {
+      return V(S_(sin_g) * x[0] + S_(cos_g) * x[2], -x[1], S_(cos_g) * x[0] - S_(sin_g) * x[2]);
+    };
+    const V in_housing = in_gear(at);
+    p = back(V(in_housing[0] + S_(centre.x()), in_housing[1] + S_(centre.y()), in_housing[2] + S_(centre.z())));
+    n = back(in_gear(normal));
     return true;
   }
 };

@@ -21,6 +21,10 @@ Chart chart_of(const SpiralBevelParameters& gear) {
   return {-std::sin(gear.pitch_angle_rad), std::cos(gear.pitch_angle_rad)};
 }
 
+Piece piece_of(const CutterKernel& k, std::size_t flank) {
+  return tooth_space::flank_of((flank == 0 ? 1 : -1) * k.hand);
+}
+
 CutFlank settings_of(const SpiralBevelParameters& gear, std::size_t flank) {
   const Cut& cut = gear.cuts[cut_of(gear, flank)];
   const Blade& blade = cut.blades[flank];
@@ -113,7 +117,7 @@ bool find_middle(CutFlank& f, const Chart& chart, double s_mean) {
 void lay_rails(CutterKernel& k, std::size_t flank) {
   constexpr std::size_t kMiddle = CutterKernel::kRails / 2;
   constexpr int kSteps = 8;
-  const Piece piece = tooth_space::flank_of((flank == 0 ? 1 : -1) * k.hand);
+  const Piece piece = piece_of(k, flank);
   auto& rails = k.rails[flank];
   const double s_mean = -0.5 * (k.R_e + k.R_i), step = (k.R_e - k.R_i) / double(CutterKernel::kRails - 1),
                h_mean = k.tip<double>(s_mean);
@@ -137,6 +141,47 @@ void lay_rails(CutterKernel& k, std::size_t flank) {
       n = way < 0 ? n - 1 : n + 1;
       lay(n, {from.v[0] + on, from.v[1] + on, 0}, {from.u_tip, from.v[2] + on});
     }
+}
+
+/// Where a flank meets the pitch cone in the middle of the face, as it is cut.
+std::optional<Refusal> meet_pitch_cone(const SpiralBevelParameters& gear, CutterKernel& k, std::size_t flank) {
+  const Piece piece = piece_of(k, flank);
+  const double R_m = gear.mean_cone_distance();
+  const char* name = flank == 0 ? "concave" : "convex";
+  Vec3 p, n;
+  (void)k.place<double>(piece, k.flanks[flank].u_F, -R_m, p, n);
+  const double h_F = chart_of(gear).up(p);
+  if (!(h_F < 0))
+    return Refusal{cut_key(gear, flank, "sliding_base"),
+                   fail("sliding_base = {:.4f} mm: the {} flank begins {:.4f} mm above the pitch cone at cone distance "
+                        "{:.4f} mm",
+                        gear.cuts[cut_of(gear, flank)].sliding_base_mm, name, h_F, R_m)};
+  // Upwards along the blade in steps: the pitch cone may lie far above the fillet.
+  Vec2& at = k.middle[flank];
+  at = {k.flanks[flank].u_F, -R_m};
+  constexpr int kSteps = 8;
+  for (int step = 1; step <= kSteps; ++step) {
+    const auto next = k.solve(piece, -R_m, h_F * (kSteps - step) / kSteps, at);
+    if (!next)
+      return Refusal{cut_key(gear, flank, "blade_pressure_angle"),
+                     fail("blade_pressure_angle = {:.4f} deg: the cutter undercuts the {} flank, which does not reach "
+                          "the pitch cone at cone distance {:.4f} mm; more pressure angle or less depth is needed",
+                          degrees(k.flanks[flank].alpha), name, R_m)};
+    at = *next;
+  }
+  return {};
+}
+
+/// The work turns with the cradle over the whole face.
+std::optional<Refusal> stands_still(const SpiralBevelParameters& gear, const CutterKernel& k, std::size_t flank) {
+  const CutFlank& f = k.flanks[flank];
+  for (const double s : {-k.R_e, -k.R_i})
+    if (const double roll = f.parameter(s); f.generated && !(f.work(roll).ratio > 0))
+      return Refusal{cut_key(gear, flank, "modified_roll_coefficients"),
+                     fail("modified_roll_coefficients: the work stands still or turns back at a roll of {:.4f} deg, "
+                          "which cone distance {:.4f} mm needs",
+                          degrees(roll), -s)};
+  return {};
 }
 
 }  // namespace
@@ -165,7 +210,6 @@ double asked_space_width(const SpiralBevelParameters& gear) {
          0.5 * gear.backlash_mm.value_or(0) * R_m / gear.outer_cone_distance_mm;
 }
 
-// Long because each cut is set up in steps that need the results of the ones before, with a refusal of its own each.
 Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear) {
   SetUp out;
   CutterKernel& k = out.kernel;
@@ -189,44 +233,18 @@ Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear) {
                           k.flanks[i].S, i == 0 ? "outside" : "inside", R_m)};
   }
   for (std::size_t i = 0; i < 2; ++i)
-    for (const double s : {-k.R_e, -k.R_i})
-      if (const double roll = k.flanks[i].parameter(s); k.flanks[i].generated && !(k.flanks[i].work(roll).ratio > 0))
-        return Refusal{
-            cut_key(gear, i, "modified_roll_coefficients"),
-            fail("modified_roll_coefficients: the work stands still or turns back at a roll of {:.4f} deg, which "
-                 "cone distance {:.4f} mm needs",
-                 degrees(roll), -s)};
+    if (auto refusal = stands_still(gear, k, i)) return std::move(*refusal);
   const bool one_cone = std::abs(concave.root_angle_rad - convex.root_angle_rad) < kSameRoot &&
                         std::abs(root_apex_z(concave) - root_apex_z(convex)) < kSameRoot;
   const bool tilted = concave.tilt_rad != 0 || convex.tilt_rad != 0;
   k.root = !concave.generated && &concave == &convex  ? RootForm::plane
            : concave.generated && one_cone && !tilted ? RootForm::cone
                                                       : RootForm::woven;
-  // Both flanks where they meet the pitch cone in the middle of the face, as they are cut.
   std::array<double, 2> azimuths{};
   for (std::size_t i = 0; i < 2; ++i) {
-    const Piece piece = tooth_space::flank_of((i == 0 ? 1 : -1) * gear.hand);
+    if (auto refusal = meet_pitch_cone(gear, k, i)) return std::move(*refusal);
     Vec3 p, n;
-    (void)k.place<double>(piece, k.flanks[i].u_F, -R_m, p, n);
-    // Upwards along the blade in steps: the pitch cone may lie far above the fillet.
-    const double h_F = chart.up(p);
-    std::optional<Vec2> at = Vec2(k.flanks[i].u_F, -R_m);
-    constexpr int kSteps = 8;
-    for (int step = 1; step <= kSteps && at; ++step) at = k.solve(piece, -R_m, h_F * (kSteps - step) / kSteps, *at);
-    if (!(h_F < 0))
-      return Refusal{
-          cut_key(gear, i, "sliding_base"),
-          fail("sliding_base = {:.4f} mm: the {} flank begins {:.4f} mm above the pitch cone at cone distance "
-               "{:.4f} mm",
-               gear.cuts[cut_of(gear, i)].sliding_base_mm, i == 0 ? "concave" : "convex", h_F, R_m)};
-    if (!at)
-      return Refusal{
-          cut_key(gear, i, "blade_pressure_angle"),
-          fail("blade_pressure_angle = {:.4f} deg: the cutter undercuts the {} flank, which does not reach the "
-               "pitch cone at cone distance {:.4f} mm; more pressure angle or less depth is needed",
-               degrees(k.flanks[i].alpha), i == 0 ? "concave" : "convex", R_m)};
-    k.middle[i] = *at;
-    (void)k.place<double>(piece, at->x(), at->y(), p, n);
+    (void)k.place<double>(piece_of(k, i), k.middle[i].x(), k.middle[i].y(), p, n);
     azimuths[i] = -gear.hand * azimuth(p);  // of the left hand
     lay_rails(k, i);
   }
