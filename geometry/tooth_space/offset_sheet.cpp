@@ -1,10 +1,7 @@
 #include "geometry/tooth_space/offset_sheet.h"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cmath>
-#include <functional>
 
 namespace toothpath::tooth_space {
 namespace {
@@ -27,17 +24,6 @@ std::optional<std::pair<double, double>> crossing(const Vec2& a0, const Vec2& a1
 }
 
 }  // namespace
-
-/// Of every r whose place it is only the one that was asked for last.
-struct OffsetSheet::Known {
-  struct Profile {
-    double r;
-    std::vector<SheetGap> gaps;
-  };
-  using Place = std::atomic<std::shared_ptr<const Profile>>;
-  Place& place(double r) { return places[std::hash<double>{}(r) % places.size()]; }
-  std::array<Place, 1024> places;
-};
 
 SheetCorner corner_of(const SheetGap& gap) {
   constexpr double kRootBegins = double(Piece::root), kRootEnds = kRootBegins + 1;
@@ -82,10 +68,9 @@ OffsetSheet::OffsetSheet(const ToothSpace& space, double delta, double r_from, d
       has_gaps_ = has_gaps_ || !s.gaps.empty();
     }
   stations_ = std::move(all);
-  if (!has_gaps_) return;
-  for (auto& s : stations_)
-    for (auto& g : s.gaps) (void)refine_gap(g, s.r);
-  known_ = std::make_shared<Known>();
+  if (has_gaps_)
+    for (auto& s : stations_)
+      for (auto& g : s.gaps) (void)refine_gap(g, s.r);
 }
 
 std::vector<OffsetSheet::Station> OffsetSheet::regular_stations(double r_from, double r_to, int count) const {
@@ -288,14 +273,6 @@ std::optional<SheetPoint> OffsetSheet::raw(double sigma, double r) const {
 
 std::vector<SheetGap> OffsetSheet::gaps(double r) const {
   if (!has_gaps_) return {};
-  Known::Place& place = known_->place(r);
-  if (const auto known = place.load(); known && known->r == r) return known->gaps;
-  std::vector<SheetGap> found = gaps_of(r);
-  place.store(std::make_shared<const Known::Profile>(Known::Profile{r, found}));
-  return found;
-}
-
-std::vector<SheetGap> OffsetSheet::gaps_of(double r) const {
   const std::size_t j = station_before(r);
   const auto &s0 = stations_[j], &s1 = stations_[j + 1];
   if (s0.gaps.empty() && s1.gaps.empty()) return {};

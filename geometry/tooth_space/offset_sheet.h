@@ -7,7 +7,6 @@
 // ends of a gap have the same centre), so that the ball touches both walls of the corner at once and gouges neither.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -64,7 +63,7 @@ class OffsetSheet {
   [[nodiscard]] std::optional<SheetPoint> raw(double sigma, double r) const;
   /// Trimmed: a sigma inside a gap is moved to the nearer end of the gap.
   [[nodiscard]] std::optional<SheetPoint> at(double sigma, double r) const;
-  /// Gaps at any r of the range. Those asked for last are kept: passes are looked at in the same profiles.
+  /// Gaps at any r of the range.
   [[nodiscard]] std::vector<SheetGap> gaps(double r) const;
 
  private:
@@ -74,7 +73,6 @@ class OffsetSheet {
   [[nodiscard]] std::optional<SheetPoint> solve(Piece piece, double u, double r, double v_start) const;
   [[nodiscard]] double parameter(Piece piece, double fraction, double r) const;
   void find_gaps(Station& station) const;
-  [[nodiscard]] std::vector<SheetGap> gaps_of(double r) const;
   [[nodiscard]] bool refine_gap(SheetGap& gap, double r) const;
   [[nodiscard]] std::size_t station_before(double r) const;
 
@@ -87,8 +85,6 @@ class OffsetSheet {
   double top_plus_[2] = {0, 0}, top_minus_[2] = {0, 0};  ///< theta at the tip = c0 + c1 r
   bool has_gaps_ = false;
   std::vector<Station> stations_;
-  struct Known;
-  std::shared_ptr<Known> known_;  ///< gaps by r, for all threads; none without gaps
 };
 
 }  // namespace toothpath::tooth_space
