@@ -179,8 +179,8 @@ class Maker {
     std::optional<tooth_space::EdgePlace> last_plus, last_minus;
     for (int k = 0; k < kTable; ++k) {
       const double s = R.s_from + (R.s_to - R.s_from) * k / (kTable - 1);
-      const double tip = space_.tip(s),
-                   root = azimuth(tooth_space::place_at(space_, tooth_space::Piece::root, 0.5, s)->p);
+      const auto middle = tooth_space::place_at(space_, tooth_space::Piece::root, 0.5, s);
+      const double tip = space_.tip(s), root = middle ? azimuth(middle->p) : NAN;
       R.table_s.push_back(s);
       R.mid.push_back(k > 0 ? next_to(R.mid.back(), root) : root);
       last_plus = edge_at(1, s, last_plus, R.mid.back());

@@ -396,8 +396,8 @@ Result<proof::CheckedClPath> GougeCheck::check_path(path::ClPath path) const {
       return fail_as(DiagnosticKind::verification,
                      "operation {} ({}), CL record {}: the {} was found to cut {:.4f} mm, but it is not proven that "
                      "it cuts less than {:.4f} mm, into {} of zone {} at radius {:.3f}, height {:.3f}; the gouge "
-                     "tolerance is {:.4f}; a ball "
-                     "or corner as wide as the fillet touches all along it: a narrower one is followed closely",
+                     "tolerance is {:.4f}; a ball or corner as wide as the fillet touches all along it: a narrower one "
+                     "is followed closely",
                      path.operation, path.operation_type, w.line, w.body, r.measured_mm, w.depth_mm, w.patch, w.zone,
                      w.radius_mm, w.height_mm, options_.limits.gouge_mm);
     return fail_as(DiagnosticKind::verification,
