@@ -20,9 +20,10 @@ void Refusals::add(Refusal refusal) {
   if (!said) refusals.push_back(std::move(refusal));
 }
 
-void Refusals::range(const char* key, double value, double low, double high, const char* unit) {
+void Refusals::range(const std::string& key, double value, double low, double high, const char* unit) {
   if (!(value >= low && value <= high))
-    refuse(key, "{} = {:.6g}{} is outside [{:g}, {:g}]{}", key, value, unit, low, high, unit);
+    refuse(key, "{} = {:.6g}{} is outside [{:g}, {:g}]{}", key.substr(key.rfind('.') + 1), value, unit, low, high,
+           unit);
 }
 
 void Refusals::integer_range(const char* key, int value, int low, int high) {

@@ -27,8 +27,9 @@ class Refusals {
     add({std::move(key), fail(text, std::forward<Args>(args)...)});
   }
   void add(Refusal refusal);
-  /// low <= value <= high; anything else, also what is not a number, is refused.
-  void range(const char* key, double value, double low, double high, const char* unit);
+  /// low <= value <= high; anything else, also what is not a number, is refused. The text names the last word of the
+  /// key.
+  void range(const std::string& key, double value, double low, double high, const char* unit);
   void integer_range(const char* key, int value, int low, int high);
   /// A length above 0.
   void positive(const char* key, double value_mm);

@@ -23,7 +23,7 @@ namespace toothpath::bevel_gear {
 template <typename S>
 S sinc(const S& u) {
   using std::sin;
-  if constexpr (bevel_detail::kEncloses<S>) {
+  if constexpr (kEncloses<S>) {
     // The series up to where |u| = 1 is told to 1e-18.
     const S q = u * u;
     S sum(1);

@@ -9,10 +9,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <type_traits>
 
-#include "geometry/base/dual.h"
-#include "geometry/base/interval.h"
+#include "geometry/base/base_of.h"
 #include "geometry/base/vec.h"
 #include "geometry/bevel_gear/flank_law.h"
 
@@ -22,12 +20,6 @@ namespace bevel_detail {
 /// True for scalars whose digits a short power series exhausts (double and its duals).
 template <typename S>
 inline constexpr bool kSeriesSuffices = std::numeric_limits<S>::digits10 <= 18;
-
-/// True for intervals and their duals: no branch holds for all that they stand for.
-template <typename S>
-inline constexpr bool kEncloses = std::is_same_v<S, Interval>;
-template <typename S, int N>
-inline constexpr bool kEncloses<Dual<S, N>> = kEncloses<S>;
 
 template <typename S>
 S magnitude(const S& a) {
@@ -53,7 +45,7 @@ S tan_minus_angle(const S& b) {
 template <typename S>
 S tan_minus_angle_difference(const S& a, const S& b) {
   using std::sin, std::cos, std::tan;
-  if constexpr (bevel_detail::kEncloses<S>) return (tan(a) - a) - (tan(b) - b);
+  if constexpr (kEncloses<S>) return (tan(a) - a) - (tan(b) - b);
   const S d = a - b;
   if (bevel_detail::magnitude(d) < S(1.75e-4) && bevel_detail::magnitude(a) > S(0.05)) {
     // tan a - tan b - d = d tan a tan b + (tan d - d)(1 + tan a tan b)

@@ -23,7 +23,7 @@ double turn_at(const BevelWall<double>& w, double beta) {
 
 WallKernel::WallKernel(const BevelGear& gear, std::size_t half)
     : h_a_(gear.parameters().addendum_mm),
-      pitch_(gear.pitch()),
+      teeth_(gear.parameters().teeth),
       ell_from_(gear.halves()[half].ell_from),
       ell_to_(gear.halves()[half].ell_to) {
   const BevelHalf& of = gear.halves()[half];
@@ -90,28 +90,12 @@ std::vector<WallKernel::Branch> WallKernel::branches(Piece piece, const Interval
 
 tooth_space::Outline WallKernel::outline() const {
   const auto& trace = walls<double>()[0].trace;
-  tooth_space::Outline out;
-  out.chart = {-trace.sin_delta, trace.cos_delta};
-  out.pitch = pitch_;
-  out.s_from = -ell_to_;
-  out.s_to = -ell_from_;
-  out.from = "large";
-  out.to = "small";
-  out.along = "cone distance";
-  out.sign = -1;
-  return out;
+  return tooth_space::outline_on_cone(trace.sin_delta, trace.cos_delta, teeth_, ell_from_, ell_to_);
 }
 
 Borders WallKernel::borders(Piece piece) const {
   const double B = walls<double>()[0].cutter.p_B;
-  switch (piece) {
-    case Piece::flank_plus: return {INFINITY, B};
-    case Piece::fillet_plus: return {fillet_end_[0], 0};
-    case Piece::root: return {0, 1};
-    case Piece::fillet_minus: return {0, fillet_end_[1]};
-    case Piece::flank_minus: return {B, INFINITY};
-    default: return {};
-  }
+  return borders_of(piece, {INFINITY, B, fillet_end_[0], 0}, {INFINITY, B, fillet_end_[1], 0});
 }
 
 Borders WallKernel::active(Piece flank) const {

@@ -36,9 +36,9 @@ class WallKernel {
 
   template <typename S>
   bool place(Piece piece, const S& u, const S& v, Vec3T<S>& p, Vec3T<S>& n) const {
-    const double at = value_of(v);
+    const double at = base_of(v);
     if (!(at > begin(piece)) || !(at < kNextToApex * begin_)) return false;
-    return place(piece, branch_at(piece, value_of(u), at), u, v, p, n);
+    return place(piece, branch_at(piece, base_of(u), at), u, v, p, n);
   }
   template <typename S>
   bool place(Piece piece, const Branch& branch, const S& u, const S& v, Vec3T<S>& p, Vec3T<S>& n) const {
@@ -88,12 +88,6 @@ class WallKernel {
   template <typename S>
   using Pair = std::array<BevelWall<S>, 2>;
 
-  static double value_of(double x) { return x; }
-  template <typename S, int N>
-  static double value_of(const Dual<S, N>& x) {
-    return value_of(x.v);
-  }
-  static double value_of(const Interval& x) { return x.middle(); }
   static double exp_of(double x) { return std::exp(x); }
   static Interval exp_of(const Interval& x) { return Interval::outwards(std::exp(x.low), std::exp(x.high), 4); }
   template <typename S, int N>
@@ -144,11 +138,15 @@ class WallKernel {
     return t.R_0 * (s * sqrt(S(s * s + S(kNear * kNear))) - S(1));
   }
 
-  /// Where the mill touches the wall, in its frame: BevelWall::point_at without angles. Its parts across the axis are
-  /// sigma rho times minus the cosine, and the sine of the contact's azimuth.
+  /// Where the mill touches the wall, in its frame, and the azimuth of that on the mill: BevelWall::point_at without
+  /// angles.
   template <typename S>
-  static Vec3T<S> contact(const BevelWall<S>& wall, const ProfilePoint<S>& q, const CutterCentre<S>& c, S* cosine,
-                          S* sine) {
+  struct Contact {
+    Vec3T<S> at;
+    S cosine, sine;
+  };
+  template <typename S>
+  static Contact<S> contact(const BevelWall<S>& wall, const ProfilePoint<S>& q, const CutterCentre<S>& c) {
     using std::sin, std::cos, std::sqrt;
     const S sd = wall.trace.sin_delta, cd = wall.trace.cos_delta, sigma(wall.sigma);
     S sg = sin(c.beta_c), cg = cos(c.beta_c);
@@ -160,9 +158,7 @@ class WallKernel {
       sg = sg / length;
       cg = cg / length;
     }
-    *cosine = cg;
-    *sine = sg;
-    return {q.x, S(-sigma * q.rho * cg), S(sigma * q.rho * sg)};
+    return {{q.x, S(-sigma * q.rho * cg), S(sigma * q.rho * sg)}, cg, sg};
   }
   template <typename S>
   static bool touched(const BevelWall<S>& wall, bool straight, const ProfilePoint<S>& q, const S& v, Vec3T<S>& p,
@@ -170,8 +166,7 @@ class WallKernel {
     using std::sin, std::cos;
     const S sd = wall.trace.sin_delta, cd = wall.trace.cos_delta, sigma(wall.sigma);
     const CutterCentre<S> c = centre(wall, straight, v);
-    S cg, sg;
-    const Vec3T<S> at = contact(wall, q, c, &cg, &sg);
+    const auto& [at, cg, sg] = contact(wall, q, c);
     p = blank_from_cutter<S>(at[0], at[1], at[2], c.R_c, c.e, sd, cd);
     const S nx = q.sin_psi, ny = sigma * q.cos_psi * cg, nz = -sigma * q.cos_psi * sg;
     const S m = nx * cd + nz * sd, ce = cos(c.e), se = sin(c.e);
@@ -188,10 +183,9 @@ class WallKernel {
       using std::atan2, std::sqrt;
       const double length = std::sqrt(1 + flat_ * flat_);
       // Beyond the end of the trace the other edge stands still: it has no part in what the root has there.
-      const bool ended = both[k].eps() < 0 && !(value_of(v) > begin_);
+      const bool ended = both[k].eps() < 0 && !(base_of(v) > begin_);
       const CutterCentre<S> c = centre(both[k], branch.straight_path[k], ended ? S(begin_) : v);
-      S cg, sg;
-      const Vec3T<S> q = contact(both[k], both[k].cutter.arc(S(1 / length), S(flat_ / length)), c, &cg, &sg);
+      const Vec3T<S> q = contact(both[k], both[k].cutter.arc(S(1 / length), S(flat_ / length)), c).at;
       const S x = q[0] * cd + (q[2] + c.R_c) * sd, r = sqrt(S(x * x + q[1] * q[1]));
       azimuth[k] = c.e + atan2(q[1], x);
       cone[k] = r * sd + ((q[2] + c.R_c) * cd - q[0] * sd) * cd;
@@ -204,7 +198,9 @@ class WallKernel {
   }
 
   std::tuple<Pair<double>, Pair<D2>, Pair<tooth_space::BoxSecond>> walls_;
-  double h_a_ = 0, pitch_ = 0, ell_from_ = 0, ell_to_ = 0;
+  double h_a_ = 0;
+  int teeth_ = 0;
+  double ell_from_ = 0, ell_to_ = 0;
   double least_turn_ = 0;
   double begin_ = 0;  ///< -R_0
   double flat_ = 0;   ///< cot(psi) where fillets end; above 0 where the path runs along the generatrix somewhere

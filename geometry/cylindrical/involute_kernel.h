@@ -137,14 +137,8 @@ struct InvoluteKernel {
   }
   [[nodiscard]] tooth_space::Borders borders(Piece piece) const {
     constexpr double kQuarter = 1.5707963267948966192313216916398;
-    switch (piece) {
-      case Piece::flank_plus: return {INFINITY, double(theta_f)};
-      case Piece::fillet_plus: return {double(alpha_n), kQuarter};
-      case Piece::root: return {0, 1};
-      case Piece::fillet_minus: return {kQuarter, double(alpha_n)};
-      case Piece::flank_minus: return {double(theta_f), INFINITY};
-      default: return {};
-    }
+    const tooth_space::WallBorders wall{INFINITY, double(theta_f), double(alpha_n), kQuarter};
+    return borders_of(piece, wall, wall);
   }
   /// Of any mate: down to the fillet.
   [[nodiscard]] tooth_space::Borders active(Piece flank) const { return borders(flank); }

@@ -206,14 +206,8 @@ std::optional<FlankCoordinates> SpaceSheet::invert(int side, double r, double z,
 
 tooth_space::Borders SpaceSheet::borders(Piece piece) const {
   const auto& w = ring_.surface.shaper;
-  switch (piece) {
-    case Piece::flank_plus: return {-INFINITY, w.theta_t};
-    case Piece::fillet_plus: return {w.A_t, w.A_e};
-    case Piece::root: return {0, 1};
-    case Piece::fillet_minus: return {w.A_e, w.A_t};
-    case Piece::flank_minus: return {w.theta_t, -INFINITY};
-    default: return {};
-  }
+  const tooth_space::WallBorders wall{-INFINITY, w.theta_t, w.A_t, w.A_e};
+  return borders_of(piece, wall, wall);
 }
 
 tooth_space::Borders SpaceSheet::active(Piece flank) const {

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/base/refusals.h"
 #include "geometry/tooth_space/limits.h"
+#include "geometry/tooth_space/toothed_solid.h"
 
 namespace toothpath::flank_grid {
 namespace {
@@ -114,24 +116,21 @@ std::optional<Vec3> on_flank(const Flank& flank, const Chart& chart, double s, d
 }
 
 /// Gathers what is wrong with a gear.
-class Fitting {
+class Fitting : public Refusals {
  public:
   explicit Fitting(const FlankGridParameters& gear) : gear_(gear) {}
 
-  std::vector<Refusal> refusals;
   GridKernel kernel;
   GridQuality quality;
 
   void numbers_in_range() {
-    if (gear_.teeth < kLeastTeeth || gear_.teeth > kMostTeeth)
-      refuse("teeth", "teeth = {} is outside [{}, {}]", gear_.teeth, kLeastTeeth, kMostTeeth);
+    integer_range("teeth", gear_.teeth, kLeastTeeth, kMostTeeth);
     if (!(gear_.fillet_radius_mm > 0 && gear_.fillet_radius_mm < 1e4))
       refuse("fillet_radius", "fillet_radius = {:.6g} mm is outside (0, 10000) mm: a ball of it rolls in the corner",
              gear_.fillet_radius_mm);
-    for (const auto& [name, value] :
-         {std::pair{"bore_diameter", gear_.bore_diameter_mm}, std::pair{"hub_diameter", gear_.hub_diameter_mm},
-          std::pair{"hub_length", gear_.hub_length_mm}})
-      if (!(value >= 0)) refuse(name, "{} = {:.6g} mm is below 0", name, value);
+    not_negative("bore_diameter", gear_.bore_diameter_mm);
+    not_negative("hub_diameter", gear_.hub_diameter_mm);
+    not_negative("hub_length", gear_.hub_length_mm);
     for (const auto& [name, line] : {std::pair{"root", &gear_.root}, std::pair{"tip", &gear_.tip}}) {
       if (line->size() < 2) refuse(name, "{} has {} points, two or more are needed: its ends", name, line->size());
       for (const Vec2& p : *line)
@@ -291,7 +290,7 @@ class Fitting {
     const auto& ring = kernel.ring;
     for (int k = 0; k < kStations; ++k) {
       const double s = ring.s_from + (ring.s_to - ring.s_from) * k / (kStations - 1);
-      const std::string where = tooth_space_station(s);
+      const std::string where = tooth_space::station(kernel.ring, s);
       if (const double land = root_land_mm(space, s); !(land > 0))
         return refuse_ball(
             fmt::format("the ball is wider than the space at {}: the fillets overlap by {:.4f} mm", where, -land));
@@ -331,16 +330,12 @@ class Fitting {
 
  private:
   template <typename... Args>
-  void refuse(const char* name, fmt::format_string<Args...> text, Args&&... args) {
-    refusals.push_back({name, fail(text, std::forward<Args>(args)...)});
-  }
-  template <typename... Args>
   void refuse_point(int side, int row, int column, fmt::format_string<Args...> text, Args&&... args) {
     Diagnostic d =
         fail("flank {}, row {}, column {}: {}", side, row, column, fmt::format(text, std::forward<Args>(args)...));
     const GridPoints& g = gear_.points(side);
     if (!g.line.empty()) d.position = {gear_.file, g.line[g.index(row, column)], 1};
-    refusals.push_back({"points", std::move(d)});
+    add({"points", std::move(d)});
   }
   /// With the largest ball that would do.
   void refuse_ball(const std::string& why) {
@@ -387,9 +382,9 @@ class Fitting {
       const Vec3 c = p + radius * n;
       if (kernel.root.height(toothpath::radius(c), c.z()) < radius)
         return fmt::format("on flank {} at {} it touches the root before it touches the flank", side,
-                           tooth_space_station(v));
+                           tooth_space::station(kernel.ring, v));
       return fmt::format("on flank {} at {} it does not reach the root down to half a height below the points", side,
-                         tooth_space_station(v));
+                         tooth_space::station(kernel.ring, v));
     }
     using D = Dual<double, 2>;
     Vec3T<D> p, n;
@@ -406,9 +401,6 @@ class Fitting {
       return fmt::format("flank {} meets the root at {:.3f} deg at {}, a fillet needs {} to {} deg", side, degrees(arc),
                          place_words(value(p)), kLeastArc, 180 - kLeastArc);
     return {};
-  }
-  [[nodiscard]] std::string tooth_space_station(double s) const {
-    return fmt::format("{} {:.4f} mm", kernel.ring.along, kernel.ring.sign * s);
   }
   static void name_stations(tooth_space::Outline& ring) {
     const Chart& chart = ring.chart;
@@ -510,8 +502,7 @@ class Fitting {
   }
 
   void see(const GridSpace& space, int side, Piece piece, double u, double s) {
-    // v of the place: of a flank by Newton, as for any other.
-    const auto v = v_of(space, piece, u, s);
+    const auto v = tooth_space::v_at(space, piece, u, s);
     if (!v) return refuse_lost(side, s);
     const TensorSpline& spline = kernel.flank(side).spline;
     const double at = kernel.ball(side).contact(*v) + (tooth_space::is_flank(piece) ? u : 0);
@@ -527,21 +518,8 @@ class Fitting {
     }
   }
   void refuse_lost(int side, double s) {
-    if (refusals.empty()) refuse("points", "flank {} is not found at {}", side, tooth_space_station(s));
+    if (refusals.empty()) refuse("points", "flank {} is not found at {}", side, tooth_space::station(kernel.ring, s));
   }
-  [[nodiscard]] std::optional<double> v_of(const GridSpace& space, Piece piece, double u, double s) const {
-    constexpr int kSteps = 30;
-    double v = kernel.v_at(piece, u, s);
-    for (int k = 0; k < kSteps; ++k) {
-      const auto q = space.at(piece, u, v);
-      if (!q) return {};
-      const double lack = s - kernel.ring.chart.along(q->p);
-      if (std::abs(lack) < 1e-10 * (1 + std::abs(s))) return v;
-      v += lack / kernel.ring.chart.along(q->p, q->pv);
-    }
-    return {};
-  }
-
   const FlankGridParameters& gear_;
   bool rises_ = true;  // root and tip run towards growing s
 };

@@ -4,40 +4,13 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/tooth_space/ring_part.h"
 
 namespace toothpath::flank_grid {
 namespace {
 
 constexpr double kBelowRoot = 0.5;  // modules
 constexpr double kPlate = 2;        // modules: so thick is the body below teeth whose ends stop at one height
-
-class FlankGridPart final : public tooth_space::ToothedPart {
- public:
-  explicit FlankGridPart(FlankGridGear gear) : gear_(std::move(gear)) {}
-
-  [[nodiscard]] int teeth() const override { return gear_.parameters().teeth; }
-  [[nodiscard]] int zones() const override { return 1; }
-  [[nodiscard]] const tooth_space::ToothSpace& space(int /*zone*/) const override { return gear_.space(); }
-  [[nodiscard]] double module_mm() const override { return gear_.module_mm(); }
-  [[nodiscard]] double lowest_root() const override {
-    const auto& ring = gear_.space().outline();
-    return std::min(gear_.root(ring.s_from), gear_.root(ring.s_to));
-  }
-  [[nodiscard]] std::optional<double> groove_floor() const override { return {}; }
-  [[nodiscard]] double blank_top() const override {
-    const auto& ring = gear_.space().outline();
-    return std::max(gear_.space().tip(ring.s_from), gear_.space().tip(ring.s_to));
-  }
-  [[nodiscard]] bool in_blank(const Vec3& p) const override {
-    const auto& ring = gear_.space().outline();
-    const double s = ring.chart.along(p);
-    return s >= ring.s_from && s <= ring.s_to && ring.chart.up(p) <= gear_.space().tip(s) &&
-           radius(p) >= 0.5 * gear_.parameters().bore_diameter_mm;
-  }
-
- private:
-  FlankGridGear gear_;
-};
 
 }  // namespace
 
@@ -128,7 +101,10 @@ tooth_space::ToothedSolid drawn_solid(const FlankGridGear& gear) {
 }
 
 std::shared_ptr<const tooth_space::ToothedPart> part_of(const FlankGridGear& gear) {
-  return std::make_shared<FlankGridPart>(gear);
+  const auto& ring = gear.space().outline();
+  return tooth_space::ring_part(gear.shared_space(), {gear.parameters().teeth, gear.module_mm(),
+                                                      std::min(gear.root(ring.s_from), gear.root(ring.s_to)),
+                                                      gear.parameters().bore_diameter_mm});
 }
 
 }  // namespace toothpath::flank_grid

@@ -17,6 +17,7 @@ class FlankGridGear {
 
   [[nodiscard]] const FlankGridParameters& parameters() const { return parameters_; }
   [[nodiscard]] const GridSpace& space() const { return *grid_.space; }
+  [[nodiscard]] std::shared_ptr<const GridSpace> shared_space() const { return grid_.space; }
   [[nodiscard]] const GridQuality& quality() const { return grid_.quality; }
   /// Transverse module half way up the teeth at their larger end.
   [[nodiscard]] double module_mm() const;
@@ -34,7 +35,7 @@ class FlankGridGear {
   std::vector<Vec2> body_;
 };
 
-/// The gear as planners and proofs ask for it. The blank is turned: tip surface, ends, bore. The gear is copied.
+/// The gear as planners and proofs ask for it. The blank is turned: tip surface, ends, bore.
 [[nodiscard]] std::shared_ptr<const tooth_space::ToothedPart> part_of(const FlankGridGear& gear);
 
 /// The finished gear, which must outlive it.

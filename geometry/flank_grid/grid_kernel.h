@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <type_traits>
 
 #include "geometry/base/angle.h"
 #include "geometry/flank_grid/rolled_ball.h"
@@ -42,8 +41,7 @@ struct GridKernel {
     if (tooth_space::is_fillet(piece)) return fillet_place(ball(side), u, v, p, n);
     if (!tooth_space::is_flank(piece)) return false;
     // Enclosures ask for no normal.
-    constexpr bool kBox = std::is_same_v<BaseOf<S>, Interval>;
-    flank(side).at<S>(S(u + ball(side).contact(v)), v, p, kBox ? nullptr : &n);
+    flank(side).at<S>(S(u + ball(side).contact(v)), v, p, kEncloses<S> ? nullptr : &n);
     return true;
   }
 
@@ -54,14 +52,8 @@ struct GridKernel {
   }
   [[nodiscard]] const tooth_space::Outline& outline() const { return ring; }
   [[nodiscard]] tooth_space::Borders borders(Piece piece) const {
-    switch (piece) {
-      case Piece::flank_plus: return {INFINITY, 0};
-      case Piece::fillet_plus: return {1, 0};
-      case Piece::root:
-      case Piece::fillet_minus: return {0, 1};
-      case Piece::flank_minus: return {0, INFINITY};
-      default: return {};
-    }
+    const tooth_space::WallBorders wall{INFINITY, 0, 1, 0};
+    return borders_of(piece, wall, wall);
   }
   /// Of any mate: down to the fillet.
   [[nodiscard]] tooth_space::Borders active(Piece flank) const { return borders(flank); }

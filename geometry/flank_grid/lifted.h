@@ -4,28 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <type_traits>
-#include <utility>
 
-#include "geometry/base/dual.h"
-#include "geometry/base/interval.h"
+#include "geometry/base/base_of.h"
 #include "geometry/base/vec.h"
 
 namespace toothpath::flank_grid {
-
-/// The number or interval below all derivatives, and how many times derivatives are taken above it.
-inline const double& base_of(const double& x) { return x; }
-inline const Interval& base_of(const Interval& x) { return x; }
-template <typename T, int N>
-const auto& base_of(const Dual<T, N>& x) {
-  return base_of(x.v);
-}
-template <typename S>
-inline constexpr int kDepth = 0;
-template <typename T, int N>
-inline constexpr int kDepth<Dual<T, N>> = 1 + kDepth<T>;
-template <typename S>
-using BaseOf = std::remove_cvref_t<decltype(base_of(std::declval<const S&>()))>;
 
 inline constexpr int kMostOrder = 3;
 

@@ -7,29 +7,13 @@ namespace toothpath::spiral_bevel {
 using tooth_space::Borders;
 using tooth_space::Outline;
 
-Outline CutterKernel::outline() const {
-  Outline out;
-  out.chart = {-sin_d, cos_d};
-  out.pitch = 4 * kQuarter / teeth;
-  out.s_from = -R_e;
-  out.s_to = -R_i;
-  out.from = "large";
-  out.to = "small";
-  out.along = "cone distance";
-  out.sign = -1;
-  return out;
-}
+Outline CutterKernel::outline() const { return tooth_space::outline_on_cone(sin_d, cos_d, teeth, R_i, R_e); }
 
 Borders CutterKernel::borders(Piece piece) const {
-  const CutFlank& f = flank(side_of(piece));
-  switch (piece) {
-    case Piece::flank_plus: return {INFINITY, f.u_F};
-    case Piece::fillet_plus: return {f.alpha, kQuarter};
-    case Piece::root: return {0, 1};
-    case Piece::fillet_minus: return {kQuarter, f.alpha};
-    case Piece::flank_minus: return {f.u_F, INFINITY};
-    default: return {};
-  }
+  const auto wall = [&](int side) {
+    return tooth_space::WallBorders{INFINITY, flank(side).u_F, flank(side).alpha, kQuarter};
+  };
+  return borders_of(piece, wall(1), wall(-1));
 }
 
 Vec2 CutterKernel::longest_step(Piece piece) const {

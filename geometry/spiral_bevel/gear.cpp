@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/refusals.h"
 #include "geometry/spiral_bevel/set_up.h"
 #include "geometry/tooth_space/limits.h"
 
@@ -52,16 +53,12 @@ tooth_space::BevelBody body_of(const SpiralBevelParameters& p, const CutterSpace
   return body;
 }
 
-/// Gathers what is wrong with a gear.
-class Inspection {
+class Inspection : public Refusals {
  public:
   explicit Inspection(const SpiralBevelParameters& gear) : gear_(gear) {}
 
-  std::vector<Refusal> refusals;
-
   void numbers() {
-    if (gear_.teeth < kLeastTeeth || gear_.teeth > kMostTeeth)
-      refuse("teeth", "teeth = {} is outside [{}, {}]", gear_.teeth, kLeastTeeth, kMostTeeth);
+    integer_range("teeth", gear_.teeth, kLeastTeeth, kMostTeeth);
     range("pitch_angle", degrees(gear_.pitch_angle_rad), 1, 90, " deg");
     range("tip_angle", degrees(gear_.tip_angle_rad), degrees(gear_.pitch_angle_rad) - 45,
           degrees(gear_.pitch_angle_rad) + 45, " deg");
@@ -106,18 +103,7 @@ class Inspection {
     for (int n = 0; n < kStations && refusals.empty(); ++n) across(space, station(k, n));
   }
 
-  template <typename... Args>
-  void refuse(const std::string& key, fmt::format_string<Args...> text, Args&&... args) {
-    refusals.push_back({key, fail(text, std::forward<Args>(args)...)});
-  }
-
  private:
-  void range(const std::string& key, double value, double low, double high, const char* unit) {
-    if (!(value >= low && value <= high))
-      refuse(key, "{} = {:.6g}{} is outside [{:.6g}, {:.6g}]{}", key.substr(key.rfind('.') + 1), value, unit, low, high,
-             unit);
-  }
-
   void blade(std::size_t flank) {
     const Blade& b = gear_.cuts[cut_of(gear_, flank)].blades[flank];
     const auto key = [&](const char* name) { return cut_key(gear_, flank, name); };
@@ -345,7 +331,7 @@ tooth_space::ToothedSolid drawn_solid(const SpiralBevelGear& gear) {
 }
 
 std::shared_ptr<const tooth_space::ToothedPart> part_of(const SpiralBevelGear& gear) {
-  return tooth_space::bevel_part(std::make_shared<const CutterSpace>(gear.space()), gear.body());
+  return tooth_space::bevel_part(gear.shared_space(), gear.body());
 }
 
 }  // namespace toothpath::spiral_bevel

@@ -22,6 +22,7 @@ class SpiralBevelGear {
 
   [[nodiscard]] const SpiralBevelParameters& parameters() const { return parameters_; }
   [[nodiscard]] const CutterSpace& space() const { return *space_; }
+  [[nodiscard]] std::shared_ptr<const CutterSpace> shared_space() const { return space_; }
   [[nodiscard]] const tooth_space::BevelBody& body() const { return body_; }
   /// Arc on the pitch circle at the mean cone distance. mm
   [[nodiscard]] double space_width_mm() const { return space_width_mm_; }
@@ -35,7 +36,7 @@ class SpiralBevelGear {
   double space_width_mm_ = 0;
 };
 
-/// The gear as planners and proofs ask for it. The gear is copied.
+/// The gear as planners and proofs ask for it.
 [[nodiscard]] std::shared_ptr<const tooth_space::ToothedPart> part_of(const SpiralBevelGear& gear);
 /// The finished gear, which must outlive it.
 [[nodiscard]] tooth_space::ToothedSolid drawn_solid(const SpiralBevelGear& gear);

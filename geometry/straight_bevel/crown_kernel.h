@@ -136,27 +136,11 @@ struct CrownKernel {
     return S(h_a) + S(tip_slope) * (s + S(R_e));
   }
   [[nodiscard]] tooth_space::Outline outline() const {
-    tooth_space::Outline out;
-    out.chart = {-double(sin_d), double(cos_d)};
-    out.pitch = 6.283185307179586476925286766559 / teeth;
-    out.s_from = -double(R_e);
-    out.s_to = -double(R_i);
-    out.from = "large";
-    out.to = "small";
-    out.along = "cone distance";
-    out.sign = -1;
-    return out;
+    return tooth_space::outline_on_cone(double(sin_d), double(cos_d), teeth, double(R_i), double(R_e));
   }
   [[nodiscard]] tooth_space::Borders borders(Piece piece) const {
-    const double tip = form == Form::octoid ? -INFINITY : INFINITY, flank = double(u_F), fillet = double(b_F);
-    switch (piece) {
-      case Piece::flank_plus: return {tip, flank};
-      case Piece::fillet_plus: return {fillet, 0};
-      case Piece::root: return {0, 1};
-      case Piece::fillet_minus: return {0, fillet};
-      case Piece::flank_minus: return {flank, tip};
-      default: return {};
-    }
+    const tooth_space::WallBorders wall{form == Form::octoid ? -INFINITY : INFINITY, double(u_F), double(b_F), 0};
+    return borders_of(piece, wall, wall);
   }
   /// Of any mate: down to the fillet.
   [[nodiscard]] tooth_space::Borders active(Piece flank) const { return borders(flank); }

@@ -192,7 +192,7 @@ tooth_space::ToothedSolid drawn_solid(const StraightBevelGear& gear) {
 }
 
 std::shared_ptr<const tooth_space::ToothedPart> part_of(const StraightBevelGear& gear) {
-  return tooth_space::bevel_part(std::make_shared<const CrownSpace>(gear.space()), gear.body());
+  return tooth_space::bevel_part(gear.shared_space(), gear.body());
 }
 
 }  // namespace toothpath::straight_bevel

@@ -21,6 +21,7 @@ class StraightBevelGear {
 
   [[nodiscard]] const StraightBevelParameters& parameters() const { return parameters_; }
   [[nodiscard]] const CrownSpace& space() const { return *space_; }
+  [[nodiscard]] std::shared_ptr<const CrownSpace> shared_space() const { return space_; }
   [[nodiscard]] const tooth_space::BevelBody& body() const { return body_; }
   /// Half angle of the root cone.
   [[nodiscard]] double root_angle() const { return parameters_.pitch_angle_rad - space_->kernel().theta_f; }
@@ -31,7 +32,7 @@ class StraightBevelGear {
   tooth_space::BevelBody body_;
 };
 
-/// The gear as planners and proofs ask for it. The gear is copied.
+/// The gear as planners and proofs ask for it.
 [[nodiscard]] std::shared_ptr<const tooth_space::ToothedPart> part_of(const StraightBevelGear& gear);
 /// The finished gear, which must outlive it.
 [[nodiscard]] tooth_space::ToothedSolid drawn_solid(const StraightBevelGear& gear);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "geometry/base/result.h"
+#include "geometry/tooth_space/ring_part.h"
 
 namespace toothpath::tooth_space {
 namespace {
@@ -16,31 +17,6 @@ Vec2 end_of_face(const Outline& ring, double s, double root, double module_mm) {
   const double h = root - kBelowRoot * module_mm * s / ring.s_from;  // all shrinks with the cone distance
   return {ring.chart.r(s, h), ring.chart.z(s, h)};
 }
-
-class BevelPart final : public ToothedPart {
- public:
-  BevelPart(std::shared_ptr<const ToothSpace> space, const BevelBody& body) : space_(std::move(space)), body_(body) {}
-
-  [[nodiscard]] int teeth() const override { return body_.teeth; }
-  [[nodiscard]] int zones() const override { return 1; }
-  [[nodiscard]] const ToothSpace& space(int /*zone*/) const override { return *space_; }
-  [[nodiscard]] double module_mm() const override { return body_.module_mm; }
-  [[nodiscard]] double lowest_root() const override { return body_.lowest_root; }
-  [[nodiscard]] std::optional<double> groove_floor() const override { return {}; }
-  [[nodiscard]] double blank_top() const override {
-    const auto& ring = space_->outline();
-    return std::max(space_->tip(ring.s_from), space_->tip(ring.s_to));
-  }
-  [[nodiscard]] bool in_blank(const Vec3& p) const override {
-    const auto& ring = space_->outline();
-    const double s = ring.chart.along(p);
-    return s >= ring.s_from && s <= ring.s_to && ring.chart.up(p) <= space_->tip(s) && radius(p) >= 0.5 * body_.bore_mm;
-  }
-
- private:
-  std::shared_ptr<const ToothSpace> space_;
-  BevelBody body_;
-};
 
 }  // namespace
 
@@ -90,7 +66,7 @@ ToothedSolid bevel_solid(const ToothSpace& space, const BevelBody& body) {
 }
 
 std::shared_ptr<const ToothedPart> bevel_part(std::shared_ptr<const ToothSpace> space, const BevelBody& body) {
-  return std::make_shared<BevelPart>(std::move(space), body);
+  return ring_part(std::move(space), {body.teeth, body.module_mm, body.lowest_root, body.bore_mm});
 }
 
 }  // namespace toothpath::tooth_space

@@ -86,6 +86,23 @@ struct Borders {
   }
 };
 
+/// u of one wall of a space at its four borders; `tip`: + or - infinity.
+struct WallBorders {
+  double tip = 0, flank = 0;    ///< of the flank, where it ends
+  double fillet = 0, root = 0;  ///< of the fillet, from the flank to the root
+};
+/// Of every piece, with the root as the share of its width.
+[[nodiscard]] inline Borders borders_of(Piece piece, const WallBorders& plus, const WallBorders& minus) {
+  switch (piece) {
+    case Piece::flank_plus: return {plus.tip, plus.flank};
+    case Piece::fillet_plus: return {plus.fillet, plus.root};
+    case Piece::root: return {0, 1};
+    case Piece::fillet_minus: return {minus.root, minus.fillet};
+    case Piece::flank_minus: return {minus.flank, minus.tip};
+    default: return {};
+  }
+}
+
 /// One ring of teeth, by numbers.
 struct Outline {
   Chart chart;
@@ -102,6 +119,21 @@ struct Outline {
     return {std::min(sign * a, sign * b), std::max(sign * a, sign * b)};
   }
 };
+
+/// Of teeth on a pitch cone, its apex below: s is minus the cone distance.
+[[nodiscard]] inline Outline outline_on_cone(double sine, double cosine, int teeth, double small_end,
+                                             double large_end) {
+  Outline out;
+  out.chart = {-sine, cosine};
+  out.pitch = 6.283185307179586476925286766559 / teeth;
+  out.s_from = -large_end;
+  out.s_to = -small_end;
+  out.from = "large";
+  out.to = "small";
+  out.along = "cone distance";
+  out.sign = -1;
+  return out;
+}
 
 /// A solved place next to the one that is asked for.
 struct Near {
