@@ -8,10 +8,10 @@
 #include "app/base/units.h"
 #include "app/process/gear_of_job.h"
 #include "app/process/ledger_sources.h"
+#include "cam/finger/finger_profile.h"
 #include "cam/finger/milling.h"
 #include "cam/force/load.h"
 #include "cam/tool/cutters.h"
-#include "cam/tool/finger_profile.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::process {
@@ -66,7 +66,7 @@ Result<tool::Profile> profile_of(const tool::ToolAssembly& t, const std::optiona
   if (!gear) return fail("a finger mill's form follows from a bevel gear");
   const auto own = finger::gear_for_finger_mill(*gear, t);
   if (!own) return own.error();
-  return tool::finger_profile(own->cutter(), t, kFingerSag);
+  return finger::finger_profile(own->cutter(), t, kFingerSag);
 }
 
 /// The cut of an operation. Refused: one whose stock the job does not tell.

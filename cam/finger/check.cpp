@@ -8,12 +8,12 @@
 
 #include "cam/finger/clearance.h"
 #include "cam/finger/deepest.h"
+#include "cam/finger/finger_profile.h"
 #include "cam/finger/milling.h"
 #include "cam/finger/obstacles.h"
 #include "cam/finger/poses.h"
 #include "cam/finger/walls.h"
 #include "cam/proof/gouge_merge.h"
-#include "cam/tool/finger_profile.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
 
@@ -129,7 +129,7 @@ struct FingerGougeCheck::State {
         continue;
       }
       states[index] = std::make_unique<FingerTool>(*own, gear, tools[index]);
-      const tool::Profile whole = tool::finger_profile(own->cutter(), tools[index], kOneChord);
+      const tool::Profile whole = finger_profile(own->cutter(), tools[index], kOneChord);
       hulls[index] = tool_hulls(whole);
       shank_holder[index] = tool::shank_and_holder(whole);
     }

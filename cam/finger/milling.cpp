@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cam/finger/finger_profile.h"
 #include "cam/finger/passes.h"
 #include "cam/finger/reference.h"
 #include "cam/tool/cutters.h"
-#include "cam/tool/finger_profile.h"
 
 namespace toothpath::finger {
 namespace {
@@ -220,7 +220,7 @@ bevel_gear::FingerCutterData finger_cutter_data(const tool::ToolAssembly& tool) 
 Result<bevel_gear::BevelGear> gear_for_finger_mill(const bevel_gear::BevelGear& gear, const tool::ToolAssembly& tool) {
   auto made = bevel_gear::BevelGear::make(gear.parameters(), finger_cutter_data(tool));
   if (const auto* bad = made.refused()) return bad->front().diagnostic;
-  const double flutes = tool::finger_flute_end(made.value().cutter(), tool);
+  const double flutes = finger_flute_end(made.value().cutter(), tool);
   const double least = gear.parameters().dedendum_mm + gear.parameters().addendum_mm;
   if (flutes < least && tool.shank_diameter_mm > 2 * made.value().cutter().rho_D)
     return fail("flute_length = {:.4f} is below the tooth depth {:.4f}: the shank would cut the tip of the teeth",

@@ -32,7 +32,7 @@ struct ToolHull {
   tool::Body body = tool::Body::flute;  ///< or shank, holder
   std::vector<Vec2> rims;
 };
-/// Flute, shank and holder of a profile of lines (`tool::finger_profile`); parts that it lacks are left out.
+/// Flute, shank and holder of a profile of lines (`finger_profile`); parts that it lacks are left out.
 [[nodiscard]] std::vector<ToolHull> tool_hulls(const tool::Profile& tool);
 /// A sag for profiles of which only hulls are made [mm]: the hull of a hollow flank needs no more than one chord.
 inline constexpr double kOneChord = 1e9;

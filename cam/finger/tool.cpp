@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cam/tool/finger_profile.h"
+#include "cam/finger/finger_profile.h"
 
 namespace toothpath::finger {
 namespace {
@@ -64,7 +64,7 @@ FingerTool::FingerTool(const bevel_gear::BevelGear& own, const bevel_gear::Bevel
       walls{WallReference(own, 1), WallReference(own, -1)},
       shape_mm(shape_difference(own, finished)),
       depth_mm(own.parameters().dedendum_mm + own.parameters().addendum_mm),
-      shank_from_mm(tool::finger_flute_end(own.cutter(), tool)),
+      shank_from_mm(finger_flute_end(own.cutter(), tool)),
       holder_from_mm(tool.holder.empty() ? 1e6 : tool.stick_out_mm) {}
 
 Vec3 motion_axis(const path::ToolMotion& m, double t) { return ((1 - t) * m.axis_from + t * m.axis_to).normalized(); }

@@ -33,7 +33,7 @@ struct CutterKind {
   CutterType type;
   const char* word;     ///< `type` in job files
   const char* name;     ///< for people
-  bool form_from_gear;  ///< its meridian follows from the gear (cam/tool/finger_profile.h), not from its numbers alone
+  bool form_from_gear;  ///< its meridian follows from the gear (cam/finger/finger_profile.h), not from numbers alone
   CutterShape shape;    ///< of the others
   std::span<const CutterUse> uses;
   std::span<const CutterNumber> numbers;

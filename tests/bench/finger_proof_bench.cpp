@@ -13,8 +13,8 @@
 #include "app/process/proof_limits.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/finger/check.h"
+#include "cam/finger/finger_profile.h"
 #include "cam/finger/milling.h"
-#include "cam/tool/finger_profile.h"
 #include "geometry/bevel_gear/part.h"
 
 namespace {
@@ -52,7 +52,7 @@ int compare(const char* file, std::size_t moves) {
     tool_of.push_back(operation.tool);
     const auto own = finger::gear_for_finger_mill(gear, job.tools[k]);
     if (!own) return fmt::print("{}: {}\n", file, own.error().message), 1;
-    tools[k] = tool::proof_tool(tool::finger_profile(own->cutter(), job.tools[k], kSag), job.tools[k].number, kSag);
+    tools[k] = tool::proof_tool(finger::finger_profile(own->cutter(), job.tools[k], kSag), job.tools[k].number, kSag);
   }
   std::erase_if(motions, [&](const path::ToolMotion& m) { return m.operation + 1 != int(job.operations.size()); });
   const std::size_t first = motions.size() > moves ? (motions.size() - moves) / 2 : 0;

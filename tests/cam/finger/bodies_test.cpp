@@ -53,11 +53,11 @@ TEST(FingerBodies, HullsAndConesEndAtTheSamePlaces) {
     tool.length_mm = 60;
     tool.holder.clear();
     if (held) tool.holder = {{16, 20, 10}, {20, 24, 5}};
-    const tool::Profile profile = tool::finger_profile(gear.cutter(), tool, 1e-3);
+    const tool::Profile profile = finger::finger_profile(gear.cutter(), tool, 1e-3);
     const auto hulls = finger::tool_hulls(profile);
     const auto cones = tool::shank_and_holder(profile);
     ASSERT_EQ(hulls.size(), held ? 3u : 2u);
-    EXPECT_EQ(hulls[0].rims.back().x(), tool::finger_flute_end(gear.cutter(), tool));
+    EXPECT_EQ(hulls[0].rims.back().x(), finger::finger_flute_end(gear.cutter(), tool));
     EXPECT_EQ(hulls[1].rims.back().x(), held ? 22 : 60);
     EXPECT_EQ(hulls.back().rims.back(), Vec2(cones.back().to, cones.back().radius_to));
     EXPECT_EQ(cones.size(), held ? 3u : 1u);
@@ -73,7 +73,7 @@ TEST(FingerBodies, ProvenGapAgainstDenseSampling) {
   tool.stick_out_mm = 22;
   tool.holder = {{16, 20, 10}};
   const auto bodies = finger::finger_bodies(gear.cutter(), tool);
-  const double h_f = gear.parameters().dedendum_mm, flute = tool::finger_flute_end(gear.cutter(), tool);
+  const double h_f = gear.parameters().dedendum_mm, flute = finger::finger_flute_end(gear.cutter(), tool);
   /// Signed in the cutting part below its top, beyond that the cylinder ends.
   const auto gap_of = [&](const Vec3& p, const Vec3& tip, const Vec3& axis) {
     const double x = (p - tip).dot(axis), rho = (p - tip - x * axis).norm();
@@ -147,7 +147,7 @@ TEST(FingerBodies, DrawnBackTheMillPassesWhereItWas) {
   const bevel_gear::BevelGear gear = made(w3(), pinion_mill());
   const tool::ToolAssembly tool = mill(pinion_mill());
   const auto bodies = finger::finger_bodies(gear.cutter(), tool);
-  const double top = tool::finger_flute_end(gear.cutter(), tool);  // 9.9
+  const double top = finger::finger_flute_end(gear.cutter(), tool);  // 9.9
   const clearance::MeshDistance plate(test::box(Vec3(-20, -20, 1), Vec3(20, 20, top - 2))),
       lid(test::box(Vec3(-20, -20, top + 1), Vec3(20, 20, top + 1.5)));
   path::ToolMotion back;

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "cam/tool/finger_profile.h"
+#include "cam/finger/finger_profile.h"
 #include "tests/cam/force/mills.h"
 #include "tests/support/random.h"
 

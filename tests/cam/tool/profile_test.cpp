@@ -8,9 +8,9 @@
 #include <boost/multiprecision/eigen.hpp>
 
 #include "cam/clearance/clearance.h"
+#include "cam/finger/finger_profile.h"
 #include "cam/tool/body.h"
 #include "cam/tool/cutters.h"
-#include "cam/tool/finger_profile.h"
 #include "geometry/base/angle.h"
 #include "tests/cam/finger/jobs.h"
 #include "tests/support/brute_force_line.h"
@@ -189,10 +189,10 @@ TEST(Profile, FingerMill) {
     const bevel_gear::FingerSolid solid(gear.cutter());
     tool::ToolAssembly assembly = mill(d.c);
     assembly.flute_length_mm = d.p.dedendum_mm + d.c.profile_height_mm + 1;
-    const double sag = 1e-5, flute = tool::finger_flute_end(gear.cutter(), assembly), rho_D = gear.cutter().rho_D;
-    const tool::Meridian m = tool::finger_meridian(gear.cutter(), flute, sag);
+    const double sag = 1e-5, flute = finger::finger_flute_end(gear.cutter(), assembly), rho_D = gear.cutter().rho_D;
+    const tool::Meridian m = finger::finger_meridian(gear.cutter(), flute, sag);
     EXPECT_EQ(m.to(), flute);
-    EXPECT_LT(2 * m.pieces().size(), tool::finger_profile(gear.cutter(), assembly, sag)
+    EXPECT_LT(2 * m.pieces().size(), finger::finger_profile(gear.cutter(), assembly, sag)
                                          .cutting()
                                          .pieces()
                                          .size());  // arcs follow the involute better than chords

@@ -1,12 +1,14 @@
-#include "cam/tool/finger_profile.h"
+#include "cam/finger/finger_profile.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "geometry/base/angle.h"
 
-namespace toothpath::tool {
+namespace toothpath::finger {
 namespace {
+
+using tool::Meridian, tool::MeridianPiece, tool::Profile, tool::ToolAssembly;
 
 constexpr int kTangents = 16;  // around the corner arc
 
@@ -30,7 +32,7 @@ void flank_arcs(const bevel_gear::FingerProfile<double>& c, double p0, double p1
   double off = 0;
   for (const double share : {0.2, 0.8}) {
     const Vec2 q = place(c, p0 + share * (p1 - p0));
-    off = std::max(off, (nearest_on_piece<double>(arc, q) - q).norm());
+    off = std::max(off, (tool::nearest_on_piece<double>(arc, q) - q).norm());
   }
   if (off <= 0.5 * sag_mm) {  // the greatest lies near the quarter points; half is kept for what lies between
     out.push_back(arc);
@@ -84,4 +86,4 @@ Profile finger_profile(const bevel_gear::FingerProfile<double>& c, const ToolAss
   return {Meridian(std::move(pieces)), shank_of(whole), holder_of(whole)};
 }
 
-}  // namespace toothpath::tool
+}  // namespace toothpath::finger
