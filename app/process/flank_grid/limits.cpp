@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/process/ledger_sources.h"
-#include "app/process/milled/bevel_gear.h"
+#include "app/process/milled/ring_limits.h"
 #include "geometry/base/json_text.h"
 
 namespace toothpath::flank_grid {

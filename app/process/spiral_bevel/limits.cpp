@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/process/milled/bevel_gear.h"
+#include "app/process/milled/ring_limits.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/json_text.h"
 

@@ -21,8 +21,7 @@ std::string gear_words(const SpiralBevelGear& gear) {
   const SpiralBevelParameters& p = gear.parameters();
   return fmt::format(
       "spiral bevel gear, z {}, {} hand, {}, outer transverse module {:.4f} mm, pitch angle {:.4f} deg, shaft angle "
-      "{:g} "
-      "deg, cone distance {:.3f} to {:.3f} mm, mean spiral angle {:.2f} deg",
+      "{:g} deg, cone distance {:.3f} to {:.3f} mm, mean spiral angle {:.2f} deg",
       p.teeth, p.hand > 0 ? "right" : "left", way_of(p), gear.body().module_mm, degrees(p.pitch_angle_rad),
       degrees(p.shaft_angle_rad), p.outer_cone_distance_mm - p.face_width_mm, p.outer_cone_distance_mm,
       degrees(0.5 * (gear.spiral_angle(1) + gear.spiral_angle(-1))));
