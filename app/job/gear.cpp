@@ -223,9 +223,6 @@ cylindrical::CylindricalParameters read_cylindrical_gear(toml::TableReader& gear
     table.finish();
     p.zones.push_back(zone);
   }
-  if (gear.misplaced("modification"))
-    gear.refuse("modification",
-                "[[gear.modification]] is not there yet for a cylindrical_gear: leave it out, the flanks are plain");
   gear.finish();
   return p;
 }
@@ -257,9 +254,6 @@ straight_bevel::StraightBevelParameters read_straight_bevel_gear(toml::TableRead
   if (land && module > 0 && *land >= module)
     gear.refuse("least_land", "least_land = {} mm is not below outer_transverse_module = {} mm", *land, module);
   else if (land && module > 0 && *land > 0) p.least_land = *land / module;
-  if (gear.misplaced("modification"))
-    gear.refuse("modification",
-                "[[gear.modification]] is not there yet for a straight_bevel_gear: leave it out, the flanks are plain");
   gear.finish();
   return p;
 }
@@ -351,9 +345,6 @@ spiral_bevel::SpiralBevelParameters read_spiral_bevel_gear(toml::TableReader& ge
     gear.refuse("cut", "[gear] lacks its cuts: one [[gear.cut]] with flank = \"both\", or one for each flank");
   if (cuts.size() > 2) gear.refuse("cut", "{} cuts exceed the limit 2", cuts.size());
   for (auto& table : cuts) p.cuts.push_back(read_cut(table, p, warnings));
-  if (gear.misplaced("modification"))
-    gear.refuse("modification",
-                "[[gear.modification]] is not there yet for a spiral_bevel_gear: leave it out, the flanks are plain");
   gear.finish();
   return p;
 }
@@ -400,10 +391,6 @@ flank_grid::FlankGridParameters read_flank_grid(toml::TableReader& gear, const s
   p.tip = read_meridian(gear, "tip");
   p.bore_diameter_mm = gear.number_or("bore_diameter", kLengthOrZero, p.bore_diameter_mm);
   optional_cylinder(gear, "hub", p.hub_diameter_mm, p.hub_length_mm);
-  if (gear.misplaced("modification"))
-    gear.refuse("modification",
-                "[[gear.modification]] is not there yet for a flank_grid: leave it out, the flanks are those of the "
-                "points");
   gear.finish();
   return p;
 }
@@ -434,21 +421,25 @@ constexpr GearType kGearTypes[] = {
      }},
     {"cylindrical_gear",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
+       job.modifications = read_modifications(gear, job.directory());
        job.gear = read_cylindrical_gear(gear, job.warnings);
        refuse_stock(root, job);
      }},
     {"straight_bevel_gear",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
+       job.modifications = read_modifications(gear, job.directory());
        job.gear = read_straight_bevel_gear(gear);
        refuse_stock(root, job);
      }},
     {"spiral_bevel_gear",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
+       job.modifications = read_modifications(gear, job.directory());
        job.gear = read_spiral_bevel_gear(gear, job.warnings);
        refuse_stock(root, job);
      }},
     {"flank_grid",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
+       job.modifications = read_modifications(gear, job.directory());
        job.gear = read_flank_grid(gear, job.directory());
        refuse_stock(root, job);
      }},

@@ -135,6 +135,8 @@ struct Job {
                straight_bevel::StraightBevelParameters, spiral_bevel::SpiralBevelParameters,
                flank_grid::FlankGridParameters>
       gear;
+  /// Of the flanks of gears that stand on their tooth spaces alone; other types have them among their parameters.
+  std::vector<modification::Modification> modifications;
   MachineChoice machine;
   std::optional<joints::Setup> setup;  ///< present in every milling job
   std::vector<tool::ToolAssembly> tools;

@@ -195,19 +195,19 @@ Result<FittedCorrection> fit_correction(const face_gear::FaceGear& gear,
   }
   FittedCorrection result;
   for (std::size_t zone = 0; zone < gear.rings().size(); ++zone) {
-    face_gear::RingCorrection ring;
+    modification::RingCorrection ring;
     for (const int side : {1, -1}) {
-      std::vector<face_gear::FlankDeviation> flank;
+      std::vector<modification::FlankDeviation> flank;
       for (std::size_t k = 0; k < points.size(); ++k)
         if (points[k].zone == int(zone) && points[k].side == side)
           flank.push_back(
               {points[k].row, points[k].column, points[k].theta, std::hypot(points[k].p.x(), points[k].p.y()), sum[k]});
-      auto fit = face_gear::FlankCorrection::fit(flank, gear.rings()[zone].surface.shaper.theta_t);
+      auto fit = modification::FlankCorrection::fit(flank, gear.rings()[zone].surface.shaper.theta_t);
       if (!fit) return at(measurements.front().file, 1, 0, "zone {}, flank {}: {}", zone, side, fit.error().message);
       result.flanks.push_back({int(zone), side, measurements.back().file, 1, fit->residual()});
       (side > 0 ? ring.plus : ring.minus) = std::move(*fit);
     }
-    result.rings.push_back(std::make_shared<face_gear::RingCorrection>(std::move(ring)));
+    result.rings.push_back(std::make_shared<modification::RingCorrection>(std::move(ring)));
   }
   return result;
 }
@@ -218,7 +218,7 @@ namespace {
 void add(FittedCorrection& sum, FittedCorrection more) {
   for (std::size_t k = 0; k < more.rings.size(); ++k)
     if (k < sum.rings.size())
-      sum.rings[k] = std::make_shared<face_gear::RingCorrection>(face_gear::RingCorrection{
+      sum.rings[k] = std::make_shared<modification::RingCorrection>(modification::RingCorrection{
           sum.rings[k]->plus.plus(more.rings[k]->plus), sum.rings[k]->minus.plus(more.rings[k]->minus)});
     else sum.rings.push_back(more.rings[k]);
   sum.flanks.insert(sum.flanks.end(), more.flanks.begin(), more.flanks.end());
@@ -299,37 +299,39 @@ Result<std::vector<MeasuredField>> fit_measured(const MeasuredInput& measured, c
   for (int zone = 0; zone < static_cast<int>(gear.zones); ++zone)
     for (const int side : {1, -1}) {
       // The field counts down the profile: its roll parameter is the height with the other sign.
-      std::vector<face_gear::FlankDeviation> flank;
+      std::vector<modification::FlankDeviation> flank;
       for (std::size_t k = 0; k < points.size(); ++k) {
         if (points[k].zone != zone || points[k].side != side) continue;
         double sum = 0;
         for (const auto& grid : *grids) sum += grid.deviation_mm[k];
-        const Vec2 place = gear.place(points[k].p);
+        const Vec2 place = gear.place(points[k]);
         flank.push_back({points[k].row, points[k].column, -place.y(), place.x(), sum});
       }
-      auto fit = face_gear::FlankCorrection::fit(flank, -gear.foot_mm);
+      auto fit = modification::FlankCorrection::fit(flank, -gear.foot);
       if (!fit) return at(grids->front().file, 1, 0, "zone {}, side {:+}: {}", zone, side, fit.error().message);
-      const auto residual = fit->residual();
-      out.push_back({zone, side, residual, [field = std::move(*fit)](double face_mm, double height_mm) {
-                       return -field.at(-height_mm, face_mm).value;
-                     }});
+      out.push_back({zone, side, std::move(*fit)});
     }
   return out;
 }
 
 std::string correction_json(const CorrectedGear& corrected) {
-  using Json = nlohmann::ordered_json;
   const FittedCorrection& fit = corrected.fit;
+  return correction_json(corrected.files, fit.flanks, corrected.grid, [&](const inspection::InspectionPoint& p) {
+    return fit.rings[std::size_t(p.zone)]->side(p.side).at(p.theta, radius(p.p)).value;
+  });
+}
+
+std::string correction_json(const std::vector<std::string>& measured, const std::vector<FittedFlank>& fitted,
+                            const std::vector<inspection::InspectionPoint>& grid,
+                            const std::function<double(const inspection::InspectionPoint&)>& offset_mm) {
+  using Json = nlohmann::ordered_json;
   Json files = Json::array(), flanks = Json::array();
-  for (const auto& file : corrected.files) files.push_back(svg::valid_utf8(file));
-  for (const auto& f : fit.flanks) {
+  for (const auto& file : measured) files.push_back(svg::valid_utf8(file));
+  for (const auto& f : fitted) {
     Json offsets = Json::array();
-    for (const auto& p : corrected.grid)
+    for (const auto& p : grid)
       if (p.zone == f.zone && p.side == f.side)
-        offsets.push_back(
-            {{"row", p.row},
-             {"column", p.column},
-             {"offset_um", app::um(fit.rings[std::size_t(f.zone)]->side(f.side).at(p.theta, radius(p.p)).value)}});
+        offsets.push_back({{"row", p.row}, {"column", p.column}, {"offset_um", app::um(offset_mm(p))}});
     const auto& r = f.residual;
     flanks.push_back({{"zone", f.zone},
                       {"side", f.side},

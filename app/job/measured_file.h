@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/face_gear/flank_correction.h"
 #include "geometry/face_gear/gear.h"
 #include "geometry/inspection/grid.h"
 #include "geometry/inspection/tooth_index.h"
+#include "geometry/modification/flank_correction.h"
 
 namespace toothpath::job {
 
@@ -42,8 +42,8 @@ struct GridOfGear {
   /// Points in the order zone, side (+1, -1), row, column; those of bevel gears without `theta` and `B`. Refused: fewer
   /// rows or columns than the gear type needs.
   std::function<Result<std::vector<inspection::InspectionPoint>>(int rows, int columns)> nominal;
-  std::function<Vec2(const Vec3&)> place{};  ///< of a point of a flank: along the face, height, mm
-  double foot_mm = 0;                        ///< height at which flanks begin, below all points of the grid
+  std::function<Vec2(const inspection::InspectionPoint&)> place{};  ///< along the face, height: any unit
+  double foot = 0;  ///< height at which flanks begin, below all points of the grid
 };
 /// As above, of any gear type.
 [[nodiscard]] Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file,
@@ -53,10 +53,10 @@ struct FittedFlank {
   int zone = 0, side = 1;
   std::string file;  ///< that was fitted; of several grids the last
   int teeth = 1;     ///< on which it was measured
-  face_gear::CorrectionResidual residual;
+  modification::CorrectionResidual residual;
 };
 struct FittedCorrection {
-  std::vector<std::shared_ptr<const face_gear::RingCorrection>> rings;
+  std::vector<std::shared_ptr<const modification::RingCorrection>> rings;
   std::vector<FittedFlank> flanks;
   inspection::IndexOfTeeth index = {};  ///< of the last file that measured several teeth
   std::vector<std::string> warnings = {};
@@ -73,15 +73,16 @@ struct MeasuredInput {
   std::optional<double> ball_diameter_mm = {};  ///< points are the centres of a ball of that diameter
 };
 
-/// The deviation of one flank as measured files tell of it: their fit.
+/// The deviation of one flank as measured files tell of it: their fit, on minus the height (theta) and the face.
 struct MeasuredField {
   int zone = 0, side = 1;
-  face_gear::CorrectionResidual residual;
-  std::function<double(double face_mm, double height_mm)> deviation_mm;  ///< > 0: material left
+  modification::FlankCorrection field;  ///< the offset that answers it
+  /// > 0: material left.
+  [[nodiscard]] double deviation_mm(double face, double height) const { return -field.at(-height, face).value; }
 };
 /// Reads files that are all grids of this gear, in the order of the cuts; their deviations add up and are fitted flank
-/// by flank. Refused: as `parse_measured`; a file that cannot be read (`file_access`); files of points, which are put
-/// on face gears only; a ball's diameter; grids of different size.
+/// by flank, in the order zone, side +1, side -1. Refused: as `parse_measured`; a file that cannot be read
+/// (`file_access`); files of points, which are put on face gears only; a ball's diameter; grids of different size.
 [[nodiscard]] Result<std::vector<MeasuredField>> fit_measured(const MeasuredInput& measured, const GridOfGear& gear);
 
 /// A gear whose target answers measured files.
@@ -98,5 +99,8 @@ struct CorrectedGear {
 /// correction.json: files, and for every flank degrees, sizes measured and left, and the offset of the target at the
 /// grid, um. Ends in a line feed.
 [[nodiscard]] std::string correction_json(const CorrectedGear& corrected);
+[[nodiscard]] std::string correction_json(const std::vector<std::string>& files, const std::vector<FittedFlank>& flanks,
+                                          const std::vector<inspection::InspectionPoint>& grid,
+                                          const std::function<double(const inspection::InspectionPoint&)>& offset_mm);
 
 }  // namespace toothpath::job

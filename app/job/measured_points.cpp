@@ -54,23 +54,23 @@ Result<FittedCorrection> fit_points(const face_gear::FaceGear& gear, const Measu
   FittedCorrection result;
   std::vector<inspection::ToothPlace> places;
   for (int zone = 0; zone < int(gear.rings().size()); ++zone) {
-    face_gear::RingCorrection ring;
+    modification::RingCorrection ring;
     for (const int side : {1, -1}) {
-      std::vector<face_gear::FlankDeviation> nominal;
+      std::vector<modification::FlankDeviation> nominal;
       for (const auto& p : *grid)
         if (p.zone == zone && p.side == side) nominal.push_back({p.row, p.column, p.theta, radius(p.p), 0});
-      std::vector<face_gear::ScatteredDeviation> flank;
+      std::vector<modification::ScatteredDeviation> flank;
       for (const auto& p : measured.points)
         if (p.zone == zone && p.side == side) flank.push_back({p.tooth, p.theta, p.radius_mm, p.deviation_mm});
       if (flank.empty()) return in_file(measured, zone, side, "no point was measured on it; every flank needs some");
-      auto fit = face_gear::FlankCorrection::fit_scattered(flank, nominal,
-                                                           gear.rings()[std::size_t(zone)].surface.shaper.theta_t);
+      auto fit = modification::FlankCorrection::fit_scattered(flank, nominal,
+                                                              gear.rings()[std::size_t(zone)].surface.shaper.theta_t);
       if (!fit) return in_file(measured, zone, side, fit.error().message);
       result.flanks.push_back({zone, side, measured.file, int(fit->teeth.size()), fit->field.residual()});
       for (const auto& tooth : fit->teeth) places.push_back({zone, side, tooth.tooth, tooth.middle_mm});
       (side > 0 ? ring.plus : ring.minus) = std::move(fit->field);
     }
-    result.rings.push_back(std::make_shared<face_gear::RingCorrection>(std::move(ring)));
+    result.rings.push_back(std::make_shared<modification::RingCorrection>(std::move(ring)));
   }
   auto index = inspection::index_of_teeth(gear, places);
   if (!index) return index.error();

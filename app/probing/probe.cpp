@@ -11,12 +11,10 @@
 #include "app/job/measured_setup.h"
 #include "app/probing/stations.h"
 #include "app/probing/touch_file.h"
+#include "app/process/flow/registry.h"
 #include "app/process/gear_of_job.h"
 #include "app/process/opening_and_end.h"
 #include "geometry/base/json_text.h"
-#include "geometry/face_gear/part.h"
-#include "geometry/inspection/bevel_touches.h"
-#include "geometry/inspection/tooth_touches.h"
 #include "machines/toml/input_text.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/controls/registry.h"
@@ -43,8 +41,7 @@ struct ProbeRequest : commands::JobRequest {
 
 struct Inputs {
   job::Job job;
-  std::optional<face_gear::FaceGear> face_gear;
-  std::optional<bevel_gear::BevelGear> bevel_gear;
+  std::unique_ptr<process::GearProcess> gear;
   std::unique_ptr<inspection::TouchedPart> part;
   machines::Machine machine;
   inspection::TouchOptions options;
@@ -52,33 +49,14 @@ struct Inputs {
   std::optional<Stations> stations;
 };
 
-/// The gear of the job, and what a probe may touch of it.
-std::vector<Diagnostic> make_part(Inputs& in) {
-  if (in.job.bevel_gear()) {
-    auto gear = process::make_bevel_gear(in.job);
-    if (auto* errors = gear.refused()) return std::move(*errors);
-    in.bevel_gear = std::move(gear).value();
-    in.part = std::make_unique<inspection::TouchedBevelGear>(*in.bevel_gear);
-    return {};
-  }
-  if (!in.job.face_gear())
-    return {fail_at(in.job.where("gear.type"),
-                    "type = \"{}\": probing is not there yet for it; it touches face_gear and "
-                    "equal_base_circle_bevel_gear",
-                    in.job.gear_type())};
-  auto gear = process::make_face_gear(in.job);
-  if (auto* errors = gear.refused()) return std::move(*errors);
-  in.face_gear = std::move(gear).value();
-  in.part = std::make_unique<inspection::TouchedTeeth>(drawn_solid(*in.face_gear),
-                                                       in.face_gear->parameters().allowance_top_mm);
-  return {};
-}
-
 std::vector<Diagnostic> read_inputs(const ProbeRequest& request, Inputs& in) {
   auto read = job::read_job_file(request.job_file);
   if (auto* errors = read.refused()) return std::move(*errors);
   in.job = std::move(read).value();
-  if (auto errors = make_part(in); !errors.empty()) return errors;
+  auto gear = flow::make_process(in.job);
+  if (auto* errors = gear.refused()) return std::move(*errors);
+  in.gear = std::move(gear).value();
+  in.part = in.gear->touched();
   if (!in.job.setup)
     return {fail_at(in.job.where("setup"), "the job lacks a [setup]: where the gear stands is not known")};
   auto machine = process::load_machine(in.job);
@@ -95,6 +73,10 @@ std::vector<Diagnostic> read_inputs(const ProbeRequest& request, Inputs& in) {
   if (!stations) return {process::located(in.job, "setup.axis", stations.error())};
   in.stations.emplace(std::move(*stations));
   return {};
+}
+
+const char* blank_words(const job::Job& job) {
+  return job.bevel_gear() ? "face cone" : job.face_gear() ? "top and rim" : "tips and end";
 }
 
 CommandOutcome write_program(const ProbeRequest& request, const Inputs& in, app::OutputDir& output) {
@@ -119,9 +101,9 @@ CommandOutcome write_program(const ProbeRequest& request, const Inputs& in, app:
   if (!text) return app::failed(process::located(in.job, "machine.file", text.error()));
   CommandOutcome outcome;
   const std::string name = std::string(kProgram) + dialect->extension;
-  const std::string where = request.blank ? fmt::format("{} of the blank in {} places",
-                                                        in.bevel_gear ? "face cone" : "top and rim", in.options.spaces)
-                                          : fmt::format("both flanks in {} tooth spaces", in.options.spaces);
+  const std::string where = request.blank
+                                ? fmt::format("{} of the blank in {} places", blank_words(in.job), in.options.spaces)
+                                : fmt::format("both flanks in {} tooth spaces", in.options.spaces);
   outcome.summary = fmt::format(
       "  probing program     {}: {} touches of {}, ball of {:g} mm\n"
       "  not looked at       the bodies of the machine and the holder of the probe\n"

@@ -35,6 +35,7 @@
 #include "cam/proof/limits.h"
 #include "cam/rest/rest_mesh.h"
 #include "geometry/exchange/shell.h"
+#include "geometry/inspection/touches.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "machines/machine.h"
 #include "postproc/joints/program.h"
@@ -177,6 +178,8 @@ class GearProcess {
   /// Its flanks as the strokes of the job's gear shaper leave them. Refused: what `shaper` refuses; a gear type that is
   /// not shaped.
   [[nodiscard]] virtual ValueOrErrors<CutFlanks> shaped(const FlankGrid& grid) const = 0;
+  /// What a probe may touch of it, teeth and blank. The gear must outlive it.
+  [[nodiscard]] virtual std::unique_ptr<inspection::TouchedPart> touched() const = 0;
   /// Refused, at gear.type: what is asked and this gear type does not have.
   [[nodiscard]] virtual Status accepts(const ContactAsked& asked) const = 0;
   /// The gear and its mate rolled. @param cut flanks as they were cut, beside the exact ones; may be null. Refused: a

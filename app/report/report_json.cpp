@@ -435,7 +435,7 @@ void add_solid(Json& json, const RunReport& r) {
                        {"too_thick_mm", r.roughed->thick_mm}};
 }
 
-Json most_json(const face_gear::ModifiedForm::Most& most, const char* key, double scale) {
+Json most_json(const tooth_space::ModifiedForm::Most& most, const char* key, double scale) {
   return {{key, most.value * scale}, {"side", most.side}, {"r", most.radius_mm}, {"z", most.height_mm}};
 }
 
@@ -453,7 +453,7 @@ Json modifications_json(const ModifiedFlanks& modified) {
     list.push_back(std::move(one));
   }
   for (const auto& z : modified.zones) {
-    const face_gear::ModifiedForm& f = z.form;
+    const tooth_space::ModifiedForm& f = z.form;
     Json one = {{"zone", z.zone},
                 {"most_removed", most_json(f.removed_mm, "um", 1000)},
                 {"most_turned", most_json(f.turned_rad, "mrad", 1000)},

@@ -55,14 +55,14 @@ struct CorrectionRow {
   int zone = 0, side = 1;
   std::string file;  ///< what was fitted
   int teeth = 1;     ///< on which it was measured
-  face_gear::CorrectionResidual fit;
+  modification::CorrectionResidual fit;
 };
 
 /// Flanks whose drawing takes something off the plain ones: what, and what it comes to.
 struct ModifiedFlanks {
   struct Zone {
     int zone = 0;
-    face_gear::ModifiedForm form;
+    tooth_space::ModifiedForm form;
   };
   std::vector<modification::Modification> list;
   std::vector<Zone> zones;                             ///< those that are modified, of face gears

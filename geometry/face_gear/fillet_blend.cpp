@@ -16,18 +16,10 @@ struct Entry {
   double d_value = 0, d_slope = 0;  ///< by Z
 };
 
-/// The C1 cubics through values with these slopes, over even steps.
-SmoothCurve hermite(double from, double step, const std::vector<Entry>& table, double Entry::*value,
-                    double Entry::*slope) {
-  std::vector<double> knots;
-  std::vector<SmoothCurve::Piece> pieces;
-  for (std::size_t k = 0; k < table.size(); ++k) knots.push_back(from + step * double(k));
-  for (std::size_t k = 0; k + 1 < table.size(); ++k) {
-    const double v = table[k].*value, d = table[k].*slope, e = table[k + 1].*slope,
-                 rise = (table[k + 1].*value - v) / step;
-    pieces.push_back({knots[k], {v, d, (3 * rise - 2 * d - e) / step, (d + e - 2 * rise) / (step * step)}});
-  }
-  return {std::move(knots), std::move(pieces)};
+std::vector<double> all(const std::vector<Entry>& table, double Entry::*number) {
+  std::vector<double> out;
+  for (const Entry& e : table) out.push_back(e.*number);
+  return out;
 }
 
 }  // namespace
@@ -71,8 +63,10 @@ FilletBlend::FilletBlend(const FaceGearSurface<double>& f, const FaceGearSurface
     const auto &a = table[k > 0 ? k - 1 : k], &b = table[std::min(k + 1, kEntries - 1)];
     table[k].d_slope = 0.5 * (b.slope - a.slope) / step;
   }
-  value_ = hermite(from_mm, step, table, &Entry::value, &Entry::d_value);
-  slope_ = hermite(from_mm, step, table, &Entry::slope, &Entry::d_slope);
+  std::vector<double> places;
+  for (std::size_t k = 0; k < kEntries; ++k) places.push_back(from_mm + step * double(k));
+  value_ = SmoothCurve::hermite(places, all(table, &Entry::value), all(table, &Entry::d_value));
+  slope_ = SmoothCurve::hermite(std::move(places), all(table, &Entry::slope), all(table, &Entry::d_slope));
 }
 
 }  // namespace toothpath::face_gear

@@ -8,9 +8,10 @@
 #include <string>
 
 #include "geometry/base/refusal.h"
-#include "geometry/face_gear/flank_correction.h"
 #include "geometry/face_gear/surface.h"
+#include "geometry/modification/flank_correction.h"
 #include "geometry/modification/modification.h"
+#include "geometry/tooth_space/modified_form.h"
 
 namespace toothpath::face_gear {
 
@@ -22,24 +23,8 @@ struct RingModification {
 
 struct FaceGearRing;
 
-/// What modifications come to on one ring, looked at on a grid of places.
-struct ModifiedForm {
-  /// A value and where it was found.
-  struct Most {
-    double value = 0;
-    int side = 1;
-    double radius_mm = 0, height_mm = 0;
-  };
-  Most removed_mm;    ///< greatest, along the normals of the plain flanks
-  Most turned_rad;    ///< greatest angle between the normals of modified and plain flank
-  Most hollow_flank;  ///< radius of the most hollow curvature, mm; infinite where nothing is hollow
-  Most hollow_fillet;
-  double plain_hollow_flank_mm = 0, plain_hollow_fillet_mm = 0;  ///< of the plain surfaces
-  Most land_mm;                                                  ///< least top land
-  double plain_land_mm = 0;                                      ///< of the plain tooth at that radius
-};
 /// Of the drawing: a correction does not count. Precondition: the ring has a modification.
-[[nodiscard]] ModifiedForm modified_form(const FaceGearParameters& gear, const FaceGearRing& ring);
+[[nodiscard]] tooth_space::ModifiedForm modified_form(const FaceGearParameters& gear, const FaceGearRing& ring);
 
 /// The modifications of a gear on one of its zones; null where nothing is modified. Refused: as modification::refused.
 [[nodiscard]] Expected<std::shared_ptr<const RingModification>, Refusal> ring_modification(
@@ -54,7 +39,7 @@ struct ModifiedForm {
 /// The fields of one flank; each may be missing.
 struct FlankField {
   const modification::Field* drawn = nullptr;
-  const FlankCorrection* measured = nullptr;
+  const modification::FlankCorrection* measured = nullptr;
   [[nodiscard]] bool none() const { return drawn == nullptr && measured == nullptr; }
 
   /// Below the tip surface, square to it, at a place of the plain flank; any frame that is the gear's turned about z.

@@ -15,7 +15,6 @@ namespace toothpath::face_gear {
 namespace {
 
 constexpr double kLeastShaftAngleDeg = 60, kMostShaftAngleDeg = 120;
-constexpr double kMostTurned = 0.1;  // rad: of a normal by modifications; beyond it amounts are no small offsets
 constexpr int kLeastTeeth = 4, kMostShaperTeeth = 1000, kMostTeeth = 10000;
 
 /// Collects the refusals of one gear.
@@ -90,10 +89,8 @@ void Inspection::zone_numbers() {
 }
 
 void Inspection::modified_zones() {
-  for (std::size_t k = 0; k < gear_.modifications.size(); ++k)
-    if (const auto zone = gear_.modifications[k].zone; zone && (*zone < 0 || *zone >= int(gear_.zones.size())))
-      refuse(fmt::format("modification[{}].zone", k), "zone = {} is not below {}, the number of zones", *zone,
-             gear_.zones.size());
+  for (auto& refusal : modification::refused_zones(gear_.modifications, int(gear_.zones.size())))
+    add(std::move(refusal));
 }
 
 void Inspection::shaper(std::size_t zone) {
@@ -213,24 +210,11 @@ void Inspection::modify(std::size_t k, const FaceGearParameters& gear, FaceGearR
   }
   r.modification = *made;
   if (!r.modification) return;
-  r.form = std::make_shared<const ModifiedForm>(modified_form(gear, r));
-  const ModifiedForm& form = *r.form;
-  if (!(form.turned_rad.value <= kMostTurned))
-    refuse("modification",
-           "zone {}: the modifications turn the normal of flank {:+d} by {:.4f} rad at radius {:.4f} mm, height {:.4f} "
-           "mm, limit {:g}: a longer length or transition, or less amount, would do",
-           k, form.turned_rad.side, form.turned_rad.value, form.turned_rad.radius_mm, form.turned_rad.height_mm,
-           kMostTurned);
-  if (!(form.land_mm.value > 0))
-    refuse("modification",
-           "zone {}: the modifications leave a top land of {:.4f} mm at radius {:.4f} mm (plain {:.4f} mm), limit 0: "
-           "the tooth is pointed",
-           k, form.land_mm.value, form.land_mm.radius_mm, form.plain_land_mm);
-  else if (form.land_mm.value < r.limits.practical_land_mm && form.plain_land_mm >= r.limits.practical_land_mm)
-    warnings.push_back(
-        fmt::format("zone {}: the modifications leave a top land of {:.4g} mm at radius {:.4f} mm, below {:.4g} mm; "
-                    "the plain tooth has {:.4g} mm",
-                    k, form.land_mm.value, form.land_mm.radius_mm, r.limits.practical_land_mm, form.plain_land_mm));
+  r.form = std::make_shared<const tooth_space::ModifiedForm>(modified_form(gear, r));
+  if (auto refusal = tooth_space::refused(*r.form, static_cast<int>(k))) refusals.push_back(std::move(*refusal));
+  else if (auto narrow = tooth_space::narrow_land(*r.form, static_cast<int>(k), r.limits.practical_land_mm);
+           !narrow.empty())
+    warnings.push_back(std::move(narrow));
 }
 
 double mid_groove(const std::vector<FaceGearRing>& rings) {
@@ -319,7 +303,8 @@ Expected<FaceGear, std::vector<Refusal>> FaceGear::make(const FaceGearParameters
   return gear;
 }
 
-FaceGear FaceGear::corrected(const std::vector<std::shared_ptr<const RingCorrection>>& corrections) const {
+FaceGear FaceGear::corrected(
+    const std::vector<std::shared_ptr<const modification::RingCorrection>>& corrections) const {
   assert(corrections.size() == rings_.size());
   FaceGear gear = *this;
   for (std::size_t k = 0; k < rings_.size(); ++k) gear.rings_[k].correction = corrections[k];

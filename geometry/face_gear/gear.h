@@ -11,11 +11,16 @@
 #include "geometry/face_gear/limits.h"
 #include "geometry/face_gear/surface.h"
 
+namespace toothpath::modification {
+struct RingCorrection;
+}  // namespace toothpath::modification
+namespace toothpath::tooth_space {
+struct ModifiedForm;
+}  // namespace toothpath::tooth_space
+
 namespace toothpath::face_gear {
 
-struct RingCorrection;
 struct RingModification;
-struct ModifiedForm;
 class SpaceSheet;
 
 /// One ring with everything precomputed.
@@ -23,9 +28,9 @@ struct FaceGearRing {
   FaceGearZone zone;
   FaceGearSurface<double> surface;
   ZoneLimits limits;
-  std::shared_ptr<const RingModification> modification = nullptr;  ///< of the nominal flanks; none: plain
-  std::shared_ptr<const ModifiedForm> form = nullptr;              ///< what it comes to; with a modification
-  std::shared_ptr<const RingCorrection> correction =
+  std::shared_ptr<const RingModification> modification = nullptr;   ///< of the nominal flanks; none: plain
+  std::shared_ptr<const tooth_space::ModifiedForm> form = nullptr;  ///< what it comes to; with a modification
+  std::shared_ptr<const modification::RingCorrection> correction =
       nullptr;  ///< flanks to aim at instead of the nominal ones; none: the nominal
   /// Are the flanks to aim at other than the plain ones?
   [[nodiscard]] bool displaced() const { return modification != nullptr || correction != nullptr; }
@@ -52,7 +57,8 @@ class FaceGear {
   [[nodiscard]] const SpaceSheet& drawn(std::size_t zone) const { return *drawn_[zone]; }
   /// The same gear with other flanks to aim at, one correction a ring. Planners and checks then take the corrected
   /// flanks for the finished surface; limits, blank, meshes and inspection points stay those of the nominal gear.
-  [[nodiscard]] FaceGear corrected(const std::vector<std::shared_ptr<const RingCorrection>>& corrections) const;
+  [[nodiscard]] FaceGear corrected(
+      const std::vector<std::shared_ptr<const modification::RingCorrection>>& corrections) const;
   /// Highest point of the blank (tip surface plus stock), mm in z.
   [[nodiscard]] double blank_top() const;
   /// Does the uncut blank hold this place? One ring for each zone, up to the top of the stock.

@@ -6,6 +6,7 @@
 
 #include "geometry/face_gear/flank_foot.h"
 #include "geometry/face_gear/space_enclosures.h"
+#include "geometry/tooth_space/exact_space.h"
 
 namespace toothpath::face_gear {
 namespace {
@@ -136,43 +137,21 @@ std::optional<SurfacePointT<S>> SpaceSheet::moved(const FaceGearSurface<S>& f, P
 
 std::optional<PatchPoint> SpaceSheet::displaced(Piece piece, double u, double v, bool curved) const {
   if (is_flank(piece) && (!(std::abs(v) < 1.4) || !(ring_.surface.flank_J(side_of(piece), u, v) > 0))) return {};
-  PatchPoint q;
-  const auto normal = [&](const Vec3& plain) {
-    const Vec3 n = q.pu.cross(q.pv);
-    const double size = n.norm();
-    q.n = size > 0 ? Vec3(n * ((n.dot(plain) > 0 ? 1 : -1) / size)) : plain;
-    return size;
-  };
   if (!curved) {
+    PatchPoint q;
     const auto at = moved<Dual2>(dual_, piece, Dual2::variable(u, 0), Dual2::variable(v, 1));
     if (!at) return {};
     q.p = value(at->p);
     q.pu = derivative(at->p, 0);
     q.pv = derivative(at->p, 1);
-    normal(value(at->n));
+    const Vec3 n = q.pu.cross(q.pv), plain = value(at->n);
+    const double size = n.norm();
+    q.n = size > 0 ? Vec3(n * ((n.dot(plain) > 0 ? 1 : -1) / size)) : plain;
     return q;
   }
-  const auto variable = [](double x, int k) {
-    Second s;
-    s.v = Dual2::variable(x, k);
-    s.d[std::size_t(k)] = Dual2(1);
-    return s;
-  };
-  const auto at = moved<Second>(second_, piece, variable(u, 0), variable(v, 1));
+  const auto at = moved<Second>(second_, piece, tooth_space::second_variable(u, 0), tooth_space::second_variable(v, 1));
   if (!at) return {};
-  const auto of = [&](const auto& take) { return Vec3(take(at->p[0]), take(at->p[1]), take(at->p[2])); };
-  q.p = of([](const Second& x) { return x.v.v; });
-  q.pu = of([](const Second& x) { return x.v.d[0]; });
-  q.pv = of([](const Second& x) { return x.v.d[1]; });
-  const Vec3 uu = of([](const Second&x) { return x.d[0].d[0]; }), uv = of([](const Second&x) { return x.d[0].d[1]; }),
-             vv = of([](const Second&x) { return x.d[1].d[1]; });
-  const double size = normal(Vec3(at->n[0].v.v, at->n[1].v.v, at->n[2].v.v));
-  if (!(size > 0)) return q;
-  const double sign = q.n.dot(q.pu.cross(q.pv)) > 0 ? 1 : -1;
-  const auto tangential = [&](const Vec3& change) { return Vec3((change - q.n * q.n.dot(change)) * (sign / size)); };
-  q.nu = tangential(uu.cross(q.pv) + q.pu.cross(uv));
-  q.nv = tangential(uv.cross(q.pv) + q.pu.cross(vv));
-  return q;
+  return tooth_space::patch_of(at->p, Vec3(at->n[0].v.v, at->n[1].v.v, at->n[2].v.v));
 }
 
 std::optional<PatchPoint> SpaceSheet::at(Piece piece, double u, double v) const {

@@ -33,15 +33,22 @@ struct GridKernel {
 
   template <typename S>
   bool place(Piece piece, const S& u, const S& v, Vec3T<S>& p, Vec3T<S>& n) const {
-    if (!(low_of(base_of(v)) >= std::max(ball_plus.from(), ball_minus.from()) &&
-          high_of(base_of(v)) <= std::min(ball_plus.to(), ball_minus.to())))
-      return false;
+    if (!rolled_at(v)) return false;
     if (piece == Piece::root) return root_place(u, v, p, n);
     const int side = tooth_space::side_of(piece);
     if (tooth_space::is_fillet(piece)) return fillet_place(ball(side), u, v, p, n);
     if (!tooth_space::is_flank(piece)) return false;
-    // Enclosures ask for no normal.
-    flank(side).at<S>(S(u + ball(side).contact(v)), v, p, kEncloses<S> ? nullptr : &n);
+    flank(side).at<S>(S(u + ball(side).contact(v)), v, p, &n);
+    return true;
+  }
+  /// The normal of a flank takes one more derivative of its spline.
+  template <typename S>
+  bool place_alone(Piece piece, const S& u, const S& v, Vec3T<S>& p) const {
+    Vec3T<S> n;
+    if (!tooth_space::is_flank(piece)) return place(piece, u, v, p, n);
+    if (!rolled_at(v)) return false;
+    const int side = tooth_space::side_of(piece);
+    flank(side).at<S>(S(u + ball(side).contact(v)), v, p, nullptr);
     return true;
   }
 
@@ -76,6 +83,12 @@ struct GridKernel {
   }
 
  private:
+  /// Do both balls reach all of v?
+  template <typename S>
+  [[nodiscard]] bool rolled_at(const S& v) const {
+    return low_of(base_of(v)) >= std::max(ball_plus.from(), ball_minus.from()) &&
+           high_of(base_of(v)) <= std::min(ball_plus.to(), ball_minus.to());
+  }
   template <typename S>
   [[nodiscard]] static S radius_of(const Vec3T<S>& p) {
     using std::sqrt;

@@ -129,6 +129,15 @@ std::optional<Refusal> refused(const std::vector<Modification>& modifications, i
   return std::nullopt;
 }
 
+std::vector<Refusal> refused_zones(const std::vector<Modification>& modifications, int zones) {
+  std::vector<Refusal> out;
+  for (std::size_t k = 0; k < modifications.size(); ++k)
+    if (const auto zone = modifications[k].zone; zone && (*zone < 0 || *zone >= zones))
+      out.push_back({fmt::format("modification[{}].zone", k),
+                     fail("zone = {} is not below {}, the number of zones", *zone, zones)});
+  return out;
+}
+
 Field::Field(const std::vector<Modification>& modifications, int side, int zone, const Rectangle& on) : on_(on) {
   for (const Modification& m : modifications)
     if (m.meets(side, zone)) add(m);

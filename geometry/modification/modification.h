@@ -76,6 +76,9 @@ struct Rectangle {
 [[nodiscard]] std::optional<Refusal> refused(const std::vector<Modification>& modifications, int zone,
                                              const Rectangle& on);
 
+/// Those whose `zone` the gear does not have: keys modification[k].zone.
+[[nodiscard]] std::vector<Refusal> refused_zones(const std::vector<Modification>& modifications, int zones);
+
 /// The sum of modifications of one flank.
 class Field {
  public:

@@ -72,6 +72,16 @@ SmoothCurve SmoothCurve::spline(const std::vector<double>& x, const std::vector<
   return {x, std::move(pieces)};
 }
 
+SmoothCurve SmoothCurve::hermite(std::vector<double> x, const std::vector<double>& y,
+                                 const std::vector<double>& slopes) {
+  std::vector<Piece> pieces;
+  for (std::size_t k = 0; k + 1 < x.size(); ++k) {
+    const double step = x[k + 1] - x[k], v = y[k], d = slopes[k], e = slopes[k + 1], rise = (y[k + 1] - v) / step;
+    pieces.push_back({x[k], {v, d, (3 * rise - 2 * d - e) / step, (d + e - 2 * rise) / (step * step)}});
+  }
+  return {std::move(x), std::move(pieces)};
+}
+
 double SmoothCurve::bent_to() const {
   for (std::size_t k = pieces_.size(); k-- > 0;)
     for (std::size_t n = 2; n < kMostTerms; ++n)

@@ -31,6 +31,9 @@ class SmoothCurve {
 
   /// The natural cubic spline through (x[k], y[k]); x rises, at least 2.
   [[nodiscard]] static SmoothCurve spline(const std::vector<double>& x, const std::vector<double>& y);
+  /// The cubics with these values and slopes at x, which rises, at least 2.
+  [[nodiscard]] static SmoothCurve hermite(std::vector<double> x, const std::vector<double>& y,
+                                           const std::vector<double>& slopes);
   /// The curve turned over: value at x as before at sum - x.
   [[nodiscard]] SmoothCurve mirrored(double sum) const;
   [[nodiscard]] SmoothCurve times(double factor) const;

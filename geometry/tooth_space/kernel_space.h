@@ -2,7 +2,8 @@
 // give derivatives, intervals of them enclosures, 50 digits the reference.
 //
 // A kernel has
-//   template <class S> bool place(Piece, const S& u, const S& v, Vec3T<S>& p, Vec3T<S>& n) const;  false: no place
+//   template <class S> bool place(Piece, const S& u, const S& v, Vec3T<S>& p, Vec3T<S>& n) const;  false: no place;
+//                                                      n over boxes, too: modified flanks are moved along it
 //   template <class S> S tip(const S& s) const;        h of the tip surface
 //   Outline outline() const;  Borders borders(Piece) const;  Borders active(Piece) const;
 //   Vec2 about_tip(int side, double s) const;          (u, v) near the tip edge: where Newton begins
@@ -11,19 +12,23 @@
 // and, where a piece is made of formulas that meet with another bend,
 //   auto branches(Piece, const Interval& u, const Interval& v) const;   those that hold somewhere in a box
 //   template <class S> bool place(Piece, branch, u, v, p, n) const;     by one of them
+// and, where a normal costs much,
+//   template <class S> bool place_alone(Piece, u, v, p) const;          without it: what enclosures ask for
 #pragma once
 
-#include <Eigen/LU>
-#include <algorithm>
 #include <utility>
 
-#include "geometry/base/angle.h"
-#include "geometry/tooth_space/tooth_space.h"
+#include "geometry/tooth_space/exact_space.h"
 
 namespace toothpath::tooth_space {
 
 template <typename Kernel>
-class KernelSpace final : public ToothSpace {
+concept Branched = requires(const Kernel& kernel, Piece piece, Interval box) {
+  kernel.branches(piece, box, box);
+};
+
+template <typename Kernel>
+class KernelSpace final : public ExactSpace {
  public:
   explicit KernelSpace(Kernel kernel) : kernel_(std::move(kernel)), outline_(kernel_.outline()) {}
   [[nodiscard]] const Kernel& kernel() const { return kernel_; }
@@ -49,40 +54,13 @@ class KernelSpace final : public ToothSpace {
     return q;
   }
   [[nodiscard]] std::optional<PatchFoot> foot(Piece piece, const Vec3& c, double u, double v) const override {
-    constexpr int kSteps = 30;
-    PatchFoot f{u, v, 0, {}};
-    double before = INFINITY;
-    for (int k = 0; k < kSteps; ++k) {
-      const auto q = at(piece, f.u, f.v);
-      if (!q) return {};
-      if (k == 0) f.distance = (c - q->p).dot(q->n);
-      const Vec3 lack = c - q->p - q->n * f.distance;
-      const double error = lack.norm();
-      f.at = *q;
-      if (error < 2e-13 * (1 + c.norm()) || (error < 1e-11 && error >= 0.5 * before)) {
-        f.distance = (c - q->p).dot(q->n);
-        return f;
-      }
-      before = error;
-      Mat3 J;
-      J << q->pu + q->nu * f.distance, q->pv + q->nv * f.distance, q->n;
-      Vec3 step = J.inverse() * lack;
-      if (!step.allFinite()) return {};
-      const Vec2 most = kernel_.longest_step(piece);
-      step /= std::max({1.0, std::abs(step[0]) / most[0], std::abs(step[1]) / most[1]});
-      f.u += step[0];
-      f.v += step[1];
-      f.distance += step[2];
-    }
-    return {};
+    return search_foot(*this, piece, c, u, v, kernel_.longest_step(piece));
   }
   [[nodiscard]] std::optional<EdgePlace> tip_edge(int side, double s,
                                                   const std::optional<EdgePlace>& near = {}) const override {
     std::optional<EdgePlace> found;
-    if (near) found = edge_from(side, s, Vec2(near->u, near->v));
-    if (!found) found = edge_from(side, s, kernel_.about_tip(side, s));
-    if (found && near) found->azimuth = near->azimuth + std::remainder(found->azimuth - near->azimuth, kTwoPi);
-    return found;
+    if (near) found = search_tip_edge(*this, side, s, Vec2(near->u, near->v), near);
+    return found ? found : search_tip_edge(*this, side, s, kernel_.about_tip(side, s), near);
   }
   [[nodiscard]] std::optional<double> start_v(Piece piece, double u, double s, double, const std::optional<Near>& near,
                                               int attempt) const override {
@@ -96,7 +74,7 @@ class KernelSpace final : public ToothSpace {
                                              double half_b) const override {
     const BoxParameters box(frame, half_a, half_b);
     Vec3T<BoxSecond> p, n;
-    if constexpr (requires { kernel_.branches(piece, box.u.v.v, box.v.v.v); }) {
+    if constexpr (Branched<Kernel>) {
       std::optional<Jet> all;
       for (const auto& branch : kernel_.branches(piece, box.u.v.v, box.v.v.v)) {
         if (!kernel_.template place<BoxSecond>(piece, branch, box.u, box.v, p, n)) return {};
@@ -106,33 +84,43 @@ class KernelSpace final : public ToothSpace {
       }
       return all;
     } else {
-      if (!kernel_.template place<BoxSecond>(piece, box.u, box.v, p, n)) return {};
+      bool found = false;
+      if constexpr (requires { kernel_.place_alone(piece, box.u, box.v, p); })
+        found = kernel_.place_alone(piece, box.u, box.v, p);
+      else found = kernel_.template place<BoxSecond>(piece, box.u, box.v, p, n);
+      if (!found) return {};
       Jet jet;
       jet.add(p);
       return jet;
     }
   }
 
+  [[nodiscard]] std::optional<Skin<Second>> second(Piece piece, double u, double v) const override {
+    return skin<Second>(piece, second_variable(u, 0), second_variable(v, 1));
+  }
+  [[nodiscard]] std::optional<Skin<BoxSecond>> boxed(Piece piece, const PatchFrame& frame, double half_a,
+                                                     double half_b) const override {
+    const BoxParameters box(frame, half_a, half_b);
+    return skin<BoxSecond>(piece, box.u, box.v);
+  }
+  [[nodiscard]] Vec2 longest_steps(Piece piece) const override { return kernel_.longest_step(piece); }
+
  private:
-  /// By Newton from (u, v); the azimuth is not unwrapped.
-  [[nodiscard]] std::optional<EdgePlace> edge_from(int side, double s, Vec2 x) const {
-    constexpr int kSteps = 30;
-    for (int k = 0; k < kSteps; ++k) {
-      const auto q = at(flank_of(side), x[0], x[1]);
-      if (!q) return {};
+  /// Nothing where formulas meet with another bend: flanks moved along such normals would have a kink there.
+  template <typename S>
+  [[nodiscard]] std::optional<Skin<S>> skin(Piece piece, const S& u, const S& v) const {
+    if constexpr (Branched<Kernel>) {
+      return {};
+    } else {
+      using std::sqrt;
+      Skin<S> at;
+      if (!kernel_.template place<S>(piece, u, v, at.p, at.n)) return {};
       const Chart& c = outline_.chart;
-      const double lack_s = s - c.along(q->p), lack_h = tip(s) - c.up(q->p);
-      if (std::abs(lack_s) + std::abs(lack_h) < 1e-12 * q->p.norm()) {
-        // Of the flank's own tooth: the minus flank of the space belongs to the next one.
-        const double own = azimuth(turned(q->p, side > 0 ? 0.0 : -outline_.pitch));
-        return EdgePlace{x[0], x[1], own};
-      }
-      const double su = c.along(q->p, q->pu), sv = c.along(q->p, q->pv), hu = c.up(q->p, q->pu), hv = c.up(q->p, q->pv),
-                   det = su * hv - sv * hu;
-      if (det == 0) return {};
-      x += Vec2(lack_s * hv - sv * lack_h, su * lack_h - lack_s * hu) / det;
+      const S r = sqrt(S(at.p[0] * at.p[0] + at.p[1] * at.p[1]));
+      at.along = S(c.cosine) * r - S(c.sine) * at.p[2];
+      at.depth = kernel_.template tip<S>(at.along) - (S(c.sine) * r + S(c.cosine) * at.p[2]);
+      return at;
     }
-    return {};
   }
   static Jet hull_of(Jet a, const Jet& b) {
     for (std::size_t k = 0; k < 3; ++k) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <sstream>
 
 #include "app/job/file.h"
 #include "app/process/gear_of_job.h"
@@ -313,6 +315,55 @@ TEST(ModifiedGear, InspectionPointsLieOnTheFlanksOfTheWords) {
   }
   EXPECT_LE(off, 1e-9);
   EXPECT_GT(moved, 0.01);
+}
+
+/// Nominal points of both flanks as inspection.csv has them: zone, flank, row, column, then place and normal.
+std::vector<std::array<double, 10>> inspected(const std::string& job) {
+  const TestDir dir;
+  write_file(dir / "job.toml", job);
+  write_file(dir / "flank_grid_spur.csv", file_text(kSamples + "/flank_grid_spur.csv"));
+  EXPECT_EQ(run_program({"surface", dir / "job.toml", "--out", dir / "out", "--quiet"}).exit_code, 0);
+  std::vector<std::array<double, 10>> out;
+  std::istringstream in(file_text(dir / "out/inspection.csv"));
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream cells(line);
+    auto& point = out.emplace_back();
+    for (double& x : point) cells >> x;
+  }
+  return out;
+}
+
+/// Gears that stand on their tooth spaces alone: at 5 to 95 % of the face, column by column, a crowning along the tooth
+/// takes what its words say off the plain points. They hold at the foot on the plain flank, which lies beside the point
+/// of the grid by what is gone at most: where teeth run aslant it lies along the tooth.
+TEST(ModifiedGear, PointsOfGearsOnTheirToothSpacesAreThoseOfTheWords) {
+  for (const auto& [sample, face] : {std::pair("cylindrical_spur.toml", 20.0),
+                                     {"straight_bevel.toml", 22.0},
+                                     {"spiral_bevel.toml", 25.4},
+                                     {"flank_grid_spur.toml", 6.0}}) {
+    const std::string plain = file_text(kSamples + "/" + sample);
+    std::string job = plain;
+    job.insert(job.find("\n[machine]"), R"(
+[[gear.modification]]
+kind = "lead_crowning"
+amount = 0.02
+flank = "left"
+)");
+    const auto before = inspected(plain), after = inspected(job);
+    ASSERT_EQ(before.size(), 90u);
+    ASSERT_EQ(after.size(), before.size());
+    for (std::size_t k = 0; k < after.size(); ++k) {
+      const auto &a = before[k], &b = after[k];
+      double gone = 0;
+      for (std::size_t n = 4; n < 7; ++n) gone += (a[n] - b[n]) * a[n + 3];
+      const double x = 0.05 + 0.9 * a[3] / 8, words = a[1] < 0 ? 0.02 * (2 * x - 1) * (2 * x - 1) : 0,
+                   slope = 0.08 * std::abs(2 * x - 1) / face;
+      EXPECT_NEAR(gone, words, 1e-6 + slope * words) << sample << " " << a[1] << " " << a[2] << " " << a[3];
+    }
+  }
 }
 
 }  // namespace

@@ -94,20 +94,21 @@ Result<CutWalls> walls_as_measured(const bevel_gear::BevelGear& gear, const job:
       return fail("{} rows x {} columns; at least {} x {} are needed", rows, columns, kLeastRows, kLeastColumns);
     return inspection::bevel_inspection_grid(gear, {rows, columns, inspection::kBevelInspection.margin});
   };
-  grid.place = [&](const Vec3& p) {
-    const auto at = bevel_gear::cone_point(p, gear.sin_delta(), gear.cos_delta());
+  grid.place = [&](const inspection::InspectionPoint& point) {
+    const auto at = bevel_gear::cone_point(point.p, gear.sin_delta(), gear.cos_delta());
     return Vec2(at.ell, at.height);
   };
-  grid.foot_mm = gear.cutter().x_B;
+  grid.foot = gear.cutter().x_B;
   auto fitted = job::fit_measured(measured, grid);
   if (!fitted) return fitted.error();
   CutWalls out{"measured", {}, {}};
-  for (const auto& f : *fitted)
+  for (const auto& f : *fitted) {
+    const auto& r = f.field.residual();
     out.notes.push_back(
         fmt::format("half {}, wall {}: {} measured places up to {:.2f} um off, met by the fit within "
                     "{:.2f} um",
-                    f.zone, letter_of(f.side), f.residual.points, f.residual.measured_max_mm * app::kUm,
-                    f.residual.residual_max_mm * app::kUm));
+                    f.zone, letter_of(f.side), r.points, r.measured_max_mm * app::kUm, r.residual_max_mm * app::kUm));
+  }
   out.left = [fields = std::make_shared<const std::vector<job::MeasuredField>>(std::move(*fitted))](
                  int half, int sigma, const bevel_gear::ConePoint& at) {
     return (*fields)[static_cast<std::size_t>(2 * half + (sigma > 0 ? 0 : 1))].deviation_mm(at.ell, at.height);

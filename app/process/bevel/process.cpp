@@ -17,6 +17,7 @@
 #include "cam/rest/swept_body.h"
 #include "geometry/base/angle.h"
 #include "geometry/bevel_gear/part.h"
+#include "geometry/inspection/bevel_touches.h"
 
 namespace toothpath::bevel {
 namespace {
@@ -113,6 +114,16 @@ class BevelProcess : public milled::ToothedProcess {
   BevelProcess(const job::Job& job, std::shared_ptr<const bevel_gear::BevelPart> part)
       : ToothedProcess(job, toothed(job, *part, part)), bevel_(part->gear()) {}
 
+  [[nodiscard]] Result<process::Correction> correct(const job::MeasuredInput&, app::StageClock&) override {
+    return fail_at(
+        job().where("gear.type"),
+        "type = \"{}\" answers no measurement: its flanks are what one mill on its paths leaves, which follows "
+        "no field of deviations; a [[gear.modification]] with a grid that is a sum over depth and face does",
+        job().gear_type());
+  }
+  [[nodiscard]] std::unique_ptr<inspection::TouchedPart> touched() const override {
+    return std::make_unique<inspection::TouchedBevelGear>(bevel_);
+  }
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
     if (asked.pinion_teeth.has_value())
       return fail_at(job().where("gear.type"), "type = \"{}\", but --pinion-teeth needs a face_gear",

@@ -53,6 +53,7 @@ milled::ToothedGear toothed(CylindricalGear made) {
   out.solid = drawn_solid(gear);
   out.owner = owner;
   out.facts = {p.teeth, gear.tip_diameter(), gear.tip_diameter(), {}};
+  out.least_land_mm = p.least_land * p.module_mm;
   out.body = body_of(gear);
   out.outline = {0.5 * gear.root_diameter(),
                  0.5 * gear.tip_diameter(),

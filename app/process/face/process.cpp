@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "app/job/measured_file.h"
 #include "app/process/face/body.h"
@@ -19,6 +18,7 @@
 #include "cam/rest/toothed_blank.h"
 #include "geometry/exchange/tooth_shell.h"
 #include "geometry/face_gear/part.h"
+#include "geometry/inspection/tooth_touches.h"
 
 namespace toothpath::face {
 namespace {
@@ -35,53 +35,6 @@ std::string gear_words(const face_gear::FaceGearParameters& p) {
         zone.helix_angle_rad == 0 ? "spur" : fmt::format("shaper helix {:g} deg", degrees(zone.helix_angle_rad)));
   return text;
 }
-
-/// Modifications that bend a flank or a fillet so hollow that the ball of an operation no longer fits, where it would
-/// fit the plain one.
-std::optional<Diagnostic> ball_in_hollow(const job::Job& job, const face_gear::FaceGear& gear) {
-  for (std::size_t n = 0; n < job.operations.size(); ++n) {
-    const path::MillingOperation& op = job.operations[n];
-    if (op.type != path::OperationType::finishing && op.type != path::OperationType::semi_finishing) continue;
-    const double R = job.tools[std::size_t(op.tool)].radius_mm() + op.allowance_mm;
-    for (std::size_t zone = 0; zone < gear.rings().size(); ++zone) {
-      const auto& form = gear.rings()[zone].form;
-      if (!form) continue;
-      for (const auto& [region, what, most, plain] :
-           {std::tuple(path::Region::flank, "flank", form->hollow_flank, form->plain_hollow_flank_mm),
-            {path::Region::fillet, "fillet", form->hollow_fillet, form->plain_hollow_fillet_mm}}) {
-        if (!op.regions[region] || most.value >= R || plain < R) continue;
-        const auto key = fmt::format("operation[{}].tool", n);
-        return process::located(
-            job, key,
-            fail("operation {}: the modifications make {} {:+d} of zone {} hollow with a radius of {:.4f} mm at radius "
-                 "{:.4f} mm, height {:.4f} mm (plain: {:.4f} mm at least): a ball of {:.4f} mm does not fit; a smaller "
-                 "ball, less amount or more length would do",
-                 n, what, most.side, zone, most.value, most.radius_mm, most.height_mm, plain, R));
-      }
-    }
-  }
-  return std::nullopt;
-}
-
-/// With the refusal of modifications that no ball follows.
-class FaceMilling final : public milled::Milling {
- public:
-  FaceMilling(const job::Job& job, const machines::Machine& machine, const face_gear::FaceGear& gear,
-              const proof::ProofLimits& limits, const process::FlankGrid& grid)
-      : Milling(job, machine, analytic::GearDistance(face_gear::part_of(gear), ball::reach_of(job.tools)),
-                body_of(gear), limits, grid),
-        job_(job),
-        gear_(gear) {}
-
-  [[nodiscard]] Status plan(app::StageClock& clock, app::Progress& progress) override {
-    if (auto refused = ball_in_hollow(job_, gear_)) return std::move(*refused);
-    return Milling::plan(clock, progress);
-  }
-
- private:
-  const job::Job& job_;
-  const face_gear::FaceGear& gear_;
-};
 
 class FaceProcess final : public process::GearProcess {
  public:
@@ -148,13 +101,19 @@ class FaceProcess final : public process::GearProcess {
                                                               const proof::ProofLimits& limits,
                                                               const process::FlankGrid& grid,
                                                               app::StageClock& clock) const override {
-    return clock.run("distance index",
-                     [&] { return std::make_unique<FaceMilling>(job_, machine, gear_, limits, grid); });
+    return clock.run("distance index", [&] {
+      return std::make_unique<milled::Milling>(
+          job_, machine, analytic::GearDistance(face_gear::part_of(gear_), ball::reach_of(job_.tools)), body_of(gear_),
+          limits, grid, part_.modified);
+    });
   }
   [[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped(const process::FlankGrid& grid) const override {
     auto places = places_on(job_, gear_, grid.rows, grid.columns);
     if (auto* errors = places.refused()) return std::move(*errors);
     return shaped_flanks(job_, gear_, std::move(places).value());
+  }
+  [[nodiscard]] std::unique_ptr<inspection::TouchedPart> touched() const override {
+    return std::make_unique<inspection::TouchedTeeth>(drawn_solid(gear_), gear_.parameters().allowance_top_mm);
   }
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
     if (!asked.other_job.empty())

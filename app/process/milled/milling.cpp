@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <tuple>
 
 #include "app/process/milled/ledger.h"
 #include "app/process/proof_limits.h"
@@ -72,8 +73,10 @@ std::vector<std::string> shortened_passes(const plan::MillingPlan& plan) {
 }  // namespace
 
 Milling::Milling(const job::Job& job, const machines::Machine& machine, analytic::GearDistance part, GearBody body,
-                 const proof::ProofLimits& limits, const process::FlankGrid& grid)
+                 const proof::ProofLimits& limits, const process::FlankGrid& grid,
+                 const std::optional<report::ModifiedFlanks>& modified)
     : job_(job),
+      modified_(modified ? modified->zones : std::vector<report::ModifiedFlanks::Zone>{}),
       limits_(limits),
       options_(plan_options(limits, machine, body.links.radius_mm)),
       part_(std::move(part)),
@@ -81,7 +84,31 @@ Milling::Milling(const job::Job& job, const machines::Machine& machine, analytic
       gouge_(part_, job.tools, {limits, part_.part().blank_top()}),
       check_(job, machine, limits, part_, body_, gouge_, surface_options(grid)) {}
 
+/// Modifications that bend a flank or a fillet so hollow that the ball of an operation no longer fits, where it would
+/// fit the plain one.
+std::optional<Diagnostic> Milling::ball_in_hollow() const {
+  for (std::size_t n = 0; n < job_.operations.size(); ++n) {
+    const path::MillingOperation& op = job_.operations[n];
+    if (op.type != path::OperationType::finishing && op.type != path::OperationType::semi_finishing) continue;
+    const double R = job_.tools[std::size_t(op.tool)].radius_mm() + op.allowance_mm;
+    for (const auto& [zone, form] : modified_)
+      for (const auto& [region, what, most, plain] :
+           {std::tuple(path::Region::flank, "flank", form.hollow_flank, form.plain_hollow_flank_mm),
+            {path::Region::fillet, "fillet", form.hollow_fillet, form.plain_hollow_fillet_mm}}) {
+        if (!op.regions[region] || most.value >= R || plain < R) continue;
+        return process::located(
+            job_, fmt::format("operation[{}].tool", n),
+            fail("operation {}: the modifications make {} {:+d} of zone {} hollow with a radius of {:.4f} mm at radius "
+                 "{:.4f} mm, height {:.4f} mm (plain: {:.4f} mm at least): a ball of {:.4f} mm does not fit; a smaller "
+                 "ball, less amount or more length would do",
+                 n, what, most.side, zone, most.value, most.radius_mm, most.height_mm, plain, R));
+      }
+  }
+  return std::nullopt;
+}
+
 Status Milling::plan(app::StageClock& clock, app::Progress& progress) {
+  if (auto refused = ball_in_hollow()) return std::move(*refused);
   plan::Options options = options_;
   options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
   auto planned = clock.run("plan", [&] {

@@ -15,8 +15,10 @@ namespace toothpath::milled {
 class Milling : public process::GearMilling {
  public:
   /// Job and machine must outlive it. @param part  answers up to ball::reach_of the tools
+  /// @param modified  of the flanks: a ball that does not fit their hollows is refused
   Milling(const job::Job& job, const machines::Machine& machine, analytic::GearDistance part, GearBody body,
-          const proof::ProofLimits& limits, const process::FlankGrid& grid);
+          const proof::ProofLimits& limits, const process::FlankGrid& grid,
+          const std::optional<report::ModifiedFlanks>& modified);
   Milling(const Milling&) = delete;
   Milling& operator=(const Milling&) = delete;
 
@@ -38,7 +40,10 @@ class Milling : public process::GearMilling {
   [[nodiscard]] sheet::OtherSurface beside_the_grid() const override { return {}; }
 
  private:
+  [[nodiscard]] std::optional<Diagnostic> ball_in_hollow() const;
+
   const job::Job& job_;
+  std::vector<report::ModifiedFlanks::Zone> modified_;
   proof::ProofLimits limits_;
   plan::Options options_;
   analytic::GearDistance part_;

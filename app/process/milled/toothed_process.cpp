@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/job/measured_file.h"
 #include "app/process/milled/bodies.h"
 #include "app/process/milled/milling.h"
 #include "app/report/page/study_page.h"
@@ -12,7 +13,11 @@
 #include "cam/ball/plan.h"
 #include "cam/rest/toothed_blank.h"
 #include "geometry/exchange/tooth_shell.h"
+#include "geometry/inspection/grid.h"
+#include "geometry/inspection/tooth_touches.h"
 #include "geometry/tooth_space/limits.h"
+#include "geometry/tooth_space/modified_form.h"
+#include "geometry/tooth_space/modified_part.h"
 #include "geometry/tooth_space/zone_next_to.h"
 
 namespace toothpath::milled {
@@ -37,9 +42,12 @@ Diagnostic no_contact(const job::Job& job) {
 /// With the rows that the gear type adds to the ledger.
 class ToothedMilling final : public Milling {
  public:
+  /// @param aimed  the gear's part, or what its flanks answer to a measurement
   ToothedMilling(const job::Job& job, const machines::Machine& machine, const ToothedGear& gear,
-                 const proof::ProofLimits& limits, const process::FlankGrid& grid)
-      : Milling(job, machine, analytic::GearDistance(gear.part, ball::reach_of(job.tools)), gear.body, limits, grid),
+                 std::shared_ptr<const tooth_space::ToothedPart> aimed, const proof::ProofLimits& limits,
+                 const process::FlankGrid& grid)
+      : Milling(job, machine, analytic::GearDistance(std::move(aimed), ball::reach_of(job.tools)), gear.body, limits,
+                grid, gear.facts.modified),
         rows_(gear.ledger) {}
   [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program,
                                                        const process::ProgramProof& proof,
@@ -55,8 +63,64 @@ class ToothedMilling final : public Milling {
 
 }  // namespace
 
-Result<process::Correction> ToothedProcess::correct(const job::MeasuredInput&, app::StageClock&) {
-  return process::needs_face_gear(job_);
+Status ToothedProcess::modify() {
+  if (job_.modifications.empty()) return Ok{};
+  auto drawn = tooth_space::modified_part(gear_.part, job_.modifications);
+  if (auto* refusal = drawn.refused())
+    return process::located(job_, "gear." + refusal->key, std::move(refusal->diagnostic));
+  report::ModifiedFlanks modified{job_.modifications, {}};
+  for (int zone = 0; zone < gear_.part->zones(); ++zone) {
+    if (&(*drawn)->space(zone) == &gear_.part->space(zone)) continue;
+    const auto form = tooth_space::modified_form(gear_.part->space(zone), (*drawn)->space(zone));
+    if (auto refusal = tooth_space::refused(form, zone))
+      return process::located(job_, "gear." + refusal->key, std::move(refusal->diagnostic));
+    if (auto narrow = tooth_space::narrow_land(form, zone, gear_.least_land_mm); !narrow.empty())
+      gear_.facts.warnings.push_back(std::move(narrow));
+    modified.zones.push_back({zone, form});
+  }
+  if (modified.zones.empty()) return Ok{};  // all amounts are zero
+  gear_.facts.modified = std::move(modified);
+  aimed_ = drawn_ = std::move(drawn).value();
+  for (auto& ring : gear_.solid.rings) ring.space = &drawn_->space(ring.zone);
+  return Ok{};
+}
+Result<process::Correction> ToothedProcess::correct(const job::MeasuredInput& measured, app::StageClock& clock) {
+  return clock.run("correction", [&] { return answer(measured); });
+}
+Result<process::Correction> ToothedProcess::answer(const job::MeasuredInput& measured) {
+  job::GridOfGear grid;
+  grid.zones = std::size_t(gear_.part->zones());
+  grid.nominal = [&](int rows, int columns) { return inspection::inspection_grid(gear_.solid, {rows, columns}); };
+  grid.place = [&](const inspection::InspectionPoint& at) -> Vec2 {
+    const auto& space = gear_.part->space(at.zone);
+    const auto flank = tooth_space::flank_rectangle(space, at.side);
+    const Vec2 share = flank ? flank->share_at(space, at.p) : Vec2(NAN, NAN);
+    return {share.x(), -share.y()};
+  };
+  grid.foot = -1;
+  auto fitted = job::fit_measured(measured, grid);
+  if (!fitted) return fitted.error();
+  process::Correction out;
+  std::vector<job::FittedFlank> flanks;
+  tooth_space::Corrections corrections;
+  for (std::size_t k = 0; k + 1 < fitted->size(); k += 2) {
+    for (const job::MeasuredField& f : {(*fitted)[k], (*fitted)[k + 1]})
+      flanks.push_back({f.zone, f.side, measured.files.back(), 1, f.field.residual()});
+    corrections.push_back(std::make_shared<modification::RingCorrection>(
+        modification::RingCorrection{(*fitted)[k].field, (*fitted)[k + 1].field}));
+  }
+  auto aimed = tooth_space::modified_part(gear_.part, job_.modifications, corrections);
+  if (auto* refusal = aimed.refused())
+    return process::located(job_, "gear." + refusal->key, std::move(refusal->diagnostic));
+  aimed_ = std::move(aimed).value();
+  for (const auto& f : flanks) out.rows.push_back({f.zone, f.side, f.file, f.teeth, f.residual});
+  const auto shown = inspection::inspection_grid(gear_.solid);
+  if (!shown) return shown.error();
+  out.json = job::correction_json(measured.files, flanks, *shown, [&](const inspection::InspectionPoint& at) {
+    const Vec2 place = grid.place(at);
+    return corrections[std::size_t(at.zone)]->side(at.side).at(-place.y(), place.x()).value;
+  });
+  return out;
 }
 page::GearOnPage ToothedProcess::on_page(const std::string& machine_name) const {
   page::GearOnPage out;
@@ -65,7 +129,7 @@ page::GearOnPage ToothedProcess::on_page(const std::string& machine_name) const 
   return out;
 }
 Result<process::SceneGear> ToothedProcess::scene(double clearance_mm) const {
-  process::SceneGear out{gear_.facts.teeth, clearance_mm, {}, [part = gear_.part](const Vec3& tip) {
+  process::SceneGear out{gear_.facts.teeth, clearance_mm, {}, [part = aimed_](const Vec3& tip) {
                            return azimuth(tip) - azimuth_of_space(*part, tip);
                          }};
   for (const auto& tool : job_.tools) out.bodies.push_back(clearance::mesh_bodies(tool));
@@ -103,10 +167,13 @@ std::unique_ptr<process::GearMilling> ToothedProcess::milling(const machines::Ma
                                                               const process::FlankGrid& grid,
                                                               app::StageClock& clock) const {
   return clock.run("distance index",
-                   [&] { return std::make_unique<ToothedMilling>(job_, machine, gear_, limits, grid); });
+                   [&] { return std::make_unique<ToothedMilling>(job_, machine, gear_, aimed_, limits, grid); });
 }
 process::ValueOrErrors<process::CutFlanks> ToothedProcess::shaped(const process::FlankGrid&) const {
   return std::vector{process::needs_face_gear(job_)};
+}
+std::unique_ptr<inspection::TouchedPart> ToothedProcess::touched() const {
+  return std::make_unique<inspection::TouchedTeeth>(gear_.solid);
 }
 Status ToothedProcess::accepts(const process::ContactAsked&) const { return no_contact(job_); }
 process::ValueOrErrors<process::ContactFound> ToothedProcess::contact(const process::ContactAsked&,
@@ -115,8 +182,10 @@ process::ValueOrErrors<process::ContactFound> ToothedProcess::contact(const proc
   return std::vector{no_contact(job_)};
 }
 
-std::unique_ptr<process::GearProcess> toothed_process(const job::Job& job, ToothedGear gear) {
-  return std::make_unique<ToothedProcess>(job, std::move(gear));
+process::ValueOrErrors<std::unique_ptr<process::GearProcess>> toothed_process(const job::Job& job, ToothedGear gear) {
+  auto made = std::make_unique<ToothedProcess>(job, std::move(gear));
+  if (auto modified = made->modify(); !modified) return std::vector{std::move(modified.error())};
+  return std::unique_ptr<process::GearProcess>(std::move(made));
 }
 
 }  // namespace toothpath::milled

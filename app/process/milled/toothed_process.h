@@ -22,6 +22,7 @@ struct ToothedGear {
   tooth_space::ToothedSolid solid;  ///< its spaces live as long as `owner`
   std::shared_ptr<const void> owner;
   process::PartFacts facts;
+  double least_land_mm = 0;  ///< of the tips: modifications that leave less are told
   GearBody body;
   sheet::PartOutline outline;
   std::string subtitle;  ///< of the page, without the machine
@@ -33,10 +34,14 @@ struct ToothedGear {
 /// A gear type that has more to say derives from it. The job must outlive it.
 class ToothedProcess : public process::GearProcess {
  public:
-  ToothedProcess(const job::Job& job, ToothedGear gear) : job_(job), gear_(std::move(gear)) {}
+  ToothedProcess(const job::Job& job, ToothedGear gear) : job_(job), gear_(std::move(gear)), aimed_(gear_.part) {}
+
+  /// The job's modifications of the drawing. Refused: those that do not fit, at their keys.
+  [[nodiscard]] Status modify();
 
   [[nodiscard]] const process::PartFacts& part() const override { return gear_.facts; }
-  [[nodiscard]] Result<process::Correction> correct(const job::MeasuredInput&, app::StageClock&) override;
+  [[nodiscard]] Result<process::Correction> correct(const job::MeasuredInput& measured,
+                                                    app::StageClock& clock) override;
   [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine&) const override { return gear_.body.links; }
   [[nodiscard]] sheet::PartOutline outline() const override { return gear_.outline; }
   [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override;
@@ -55,6 +60,7 @@ class ToothedProcess : public process::GearProcess {
                                                               const process::FlankGrid& grid,
                                                               app::StageClock& clock) const override;
   [[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped(const process::FlankGrid&) const override;
+  [[nodiscard]] std::unique_ptr<inspection::TouchedPart> touched() const override;
   [[nodiscard]] Status accepts(const process::ContactAsked&) const override;
   [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,
                                                                       const process::CutFlanks*,
@@ -71,11 +77,17 @@ class ToothedProcess : public process::GearProcess {
   [[nodiscard]] const ToothedGear& gear() const { return gear_; }
 
  private:
+  /// The flanks to aim at answer measured grids.
+  [[nodiscard]] Result<process::Correction> answer(const job::MeasuredInput& measured);
+
   const job::Job& job_;
   ToothedGear gear_;
+  std::shared_ptr<const tooth_space::ToothedPart> drawn_;  ///< with the modifications of the drawing; none: plain
+  std::shared_ptr<const tooth_space::ToothedPart> aimed_;  ///< with the answer to a measurement
 };
 
-/// The job must outlive it.
-[[nodiscard]] std::unique_ptr<process::GearProcess> toothed_process(const job::Job& job, ToothedGear gear);
+/// The gear with the modifications of the job, which must outlive it. Refused: modifications that do not fit.
+[[nodiscard]] process::ValueOrErrors<std::unique_ptr<process::GearProcess>> toothed_process(const job::Job& job,
+                                                                                            ToothedGear gear);
 
 }  // namespace toothpath::milled

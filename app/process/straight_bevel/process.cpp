@@ -31,6 +31,7 @@ milled::ToothedGear toothed(StraightBevelGear made) {
   const StraightBevelParameters& p = gear->parameters();
   milled::ToothedGear out =
       milled::bevel_gear(gear, part_of(*gear), drawn_solid(*gear), gear->body(), gear_words(*gear));
+  out.least_land_mm = p.least_land * p.outer_transverse_module_mm;
   out.subtitle = fmt::format("straight bevel gear z {}, outer module {} mm, {}, pitch angle {:.4f} deg", p.teeth,
                              svg::short_number(p.outer_transverse_module_mm), form_of(p), degrees(p.pitch_angle_rad));
   out.limits_json = [gear] { return limits_json(*gear); };

@@ -10,7 +10,7 @@ std::string length_or_dash(double mm) { return std::isfinite(mm) ? fmt::format("
 
 /// What the modifications of a zone come to.
 std::string zone_words(const report::ModifiedFlanks::Zone& z) {
-  const face_gear::ModifiedForm& f = z.form;
+  const tooth_space::ModifiedForm& f = z.form;
   return fmt::format(
       "Zone {}: {:.2f} um are taken at most (flank {:+d}, r {:.3f} mm, z {:.3f} mm), normals turn by {:.2f} mrad; the "
       "smallest hollow radius is {} mm on the flanks and {} mm in the fillets (plain: {}); the least top land is "

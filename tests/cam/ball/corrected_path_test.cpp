@@ -2,8 +2,8 @@
 // against the nominal one.
 #include "cam/cut/cut_surface.h"
 #include "cam/cut/swept_path.h"
-#include "geometry/face_gear/flank_correction.h"
 #include "geometry/face_gear/part.h"
+#include "geometry/modification/flank_correction.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/inspection_points.h"
 
@@ -24,17 +24,17 @@ face_gear::FaceGearParameters short_spur() {
 }
 
 face_gear::FaceGear corrected(const face_gear::FaceGear& nominal) {
-  face_gear::RingCorrection ring;
+  modification::RingCorrection ring;
   for (const int side : {1, -1}) {
-    std::vector<face_gear::FlankDeviation> points;
+    std::vector<modification::FlankDeviation> points;
     for (const auto& p : grid_of(nominal, 5, 9))
       if (p.side == side)
         points.push_back(
             {p.row, p.column, p.theta, std::hypot(p.p.x(), p.p.y()), process_error(side, p.row / 4.0, p.column / 8.0)});
     (side > 0 ? ring.plus : ring.minus) =
-        *face_gear::FlankCorrection::fit(points, nominal.rings()[0].surface.shaper.theta_t);
+        *modification::FlankCorrection::fit(points, nominal.rings()[0].surface.shaper.theta_t);
   }
-  return nominal.corrected({std::make_shared<face_gear::RingCorrection>(ring)});
+  return nominal.corrected({std::make_shared<modification::RingCorrection>(ring)});
 }
 
 TEST(CorrectedPath, PlannedAndProvenAgainstTheCorrectedFlanksAndWrongForTheOthers) {

@@ -1,11 +1,16 @@
-// Touches of gears that stand on the tooth space alone: the cylindrical gear.
+// Touches of gears that stand on the tooth space alone: cylindrical gears, straight and spiral bevel gears, points.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "geometry/cylindrical/part.h"
 #include "geometry/inspection/tooth_touches.h"
+#include "geometry/tooth_space/limits.h"
 #include "tests/geometry/cylindrical/samples.h"
+#include "tests/geometry/flank_grid/samples.h"
+#include "tests/geometry/spiral_bevel/samples.h"
+#include "tests/geometry/straight_bevel/samples.h"
 #include "tests/support/random.h"
 
 namespace toothpath::test {
@@ -67,6 +72,21 @@ TEST(AnyGearTouches, BallAndStemMeetNothingButTheirFlank) {
   }
 }
 
+/// Along the line of each touch to where the ball meets what stands off: there its gap is 0.
+template <typename Gap>
+std::vector<inspection::TouchResult> met(const inspection::TouchPlan& plan, const Gap& gap) {
+  std::vector<inspection::TouchResult> out;
+  for (const auto& touch : plan.touches) {
+    double near = -0.5, far = 0.5;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (near + far);
+      (gap(touch, Vec3(touch.centre + middle * touch.normal)) < 0 ? near : far) = middle;
+    }
+    out.push_back({touch.number, touch.centre + far * touch.normal, {"r.txt", touch.number, 1}});
+  }
+  return out;
+}
+
 TEST(AnyGearTouches, AGearThatStandsAnywhereIsFound) {
   Random random(17);
   for (const auto& parameters : cylindrical_samples()) {
@@ -80,19 +100,10 @@ TEST(AnyGearTouches, AGearThatStandsAnywhereIsFound) {
     for (int trial = 0; trial < 5; ++trial) {
       const Vec3 moved = random.vector(0.1);
       const double turn = random(-0.1, 0.1) / (0.5 * gear.tip_diameter());
-      // Along the line of each touch to where the ball meets the flank that stands off.
       const auto read = [&](const inspection::TouchPlan& of, double turn_of, const auto& distance) {
-        std::vector<inspection::TouchResult> out;
-        for (const auto& touch : of.touches) {
-          double near = -0.5, far = 0.5;
-          for (int k = 0; k < 60; ++k) {
-            const double middle = 0.5 * (near + far);
-            const Vec3 at = touch.centre + middle * touch.normal;
-            (distance(touch, turned(Vec3(at - moved), -turn_of)) < ball ? near : far) = middle;
-          }
-          out.push_back({touch.number, touch.centre + far * touch.normal, {"r.txt", touch.number, 1}});
-        }
-        return out;
+        return met(of, [&](const inspection::Touch& touch, const Vec3& at) {
+          return distance(touch, turned(Vec3(at - moved), -turn_of)) - ball;
+        });
       };
       const auto on_flank = [&](const inspection::Touch& touch, const Vec3& x) {
         if (touch.what == inspection::Touched::end) return parameters.zones.front().from_mm - x.z();
@@ -114,6 +125,50 @@ TEST(AnyGearTouches, AGearThatStandsAnywhereIsFound) {
       EXPECT_LT((of_blank->moved_mm - moved).norm(), 1e-6);
       EXPECT_EQ(of_blank->clocking_rad, 0);
     }
+  }
+}
+
+/// A cone shows its place along the axis by its flanks; its blank has no flat top.
+void expect_found(const tooth_space::ToothedSolid& solid) {
+  Random random(4);
+  const tooth_space::ToothSpace& space = *solid.rings.front().space;
+  const auto& ring = space.outline();
+  const inspection::TouchedTeeth part(solid);
+  const inspection::TouchOptions options{1.2, 0, 1, 0.05, 4};
+  const auto plan = inspection::plan_touches(part, options);
+  ASSERT_TRUE(plan) << plan.error().message;
+  EXPECT_EQ(plan->touches.size(), std::size_t(options.spaces) * 4);
+  EXPECT_FALSE(inspection::plan_blank_touches(part, options));
+  for (int trial = 0; trial < 3; ++trial) {
+    const Vec3 moved = random.vector(0.1);
+    const double turn = random(-0.003, 0.003);
+    const auto results = met(*plan, [&](const inspection::Touch& touch, const Vec3& at) {
+      const Vec3 home = turned(Vec3(at - moved), -turn - touch.space * ring.pitch);
+      const auto piece = tooth_space::flank_of(touch.side);
+      const double s = std::clamp(ring.chart.along(home), ring.s_from, ring.s_to);
+      const auto borders = space.borders(piece);
+      const double u =
+          0.5 * (space.tip_edge(touch.side, s)->u + (std::isfinite(borders.from) ? borders.from : borders.to));
+      return space.foot(piece, home, u, *tooth_space::v_at(space, piece, u, s)).value().distance -
+             0.5 * options.ball_diameter_mm;
+    });
+    const auto place = inspection::place_of_part(part, *plan, options, results, "r.txt");
+    ASSERT_TRUE(place) << place.error().text();
+    EXPECT_LT((place->moved_mm - moved).norm(), 1e-6);
+    EXPECT_NEAR(place->clocking_rad, turn, 1e-8);
+  }
+}
+TEST(AnyGearTouches, GearsOnAConeAreFoundByTheirFlanks) {
+  const auto straight = straight_bevel::StraightBevelGear::make(khk_pinion()).value();
+  const auto pinion = spiral_bevel::SpiralBevelGear::make(nasa_pinion()).value(),
+             wheel = spiral_bevel::SpiralBevelGear::make(formate_wheel()).value();
+  const auto points = flank_grid::FlankGridGear::make(sampled(khk_pinion(), {9, 9, 0.75})).value();
+  for (const auto& [name, solid] : {std::pair("straight", drawn_solid(straight)),
+                                    {"spiral pinion", drawn_solid(pinion)},
+                                    {"Formate wheel", drawn_solid(wheel)},
+                                    {"points", drawn_solid(points)}}) {
+    SCOPED_TRACE(name);
+    expect_found(solid);
   }
 }
 

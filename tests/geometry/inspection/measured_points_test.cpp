@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "geometry/face_gear/flank_correction.h"
 #include "geometry/face_gear/inverse.h"
 #include "geometry/inspection/dmis.h"
 #include "geometry/inspection/flank_points.h"
 #include "geometry/inspection/tooth_index.h"
+#include "geometry/modification/flank_correction.h"
 #include "tests/geometry/inspection/measured_teeth.h"
 #include "tests/support/inspection_points.h"
 #include "tests/support/sample_gears.h"
@@ -123,17 +123,17 @@ TEST(MeasuredPoints, PointsOnNoFlankAreRefusedAtTheirPlaceWithWhatIsWrong) {
     has(refused([&](const auto& s, std::size_t k) { return k == 0 ? middle : s.p; }, false), "state the normals i j k");
 }
 
-Result<face_gear::ScatteredFit> fit_of(const face_gear::FaceGear& gear,
-                                       const std::vector<inspection::InspectionPoint>& grid,
-                                       const std::vector<inspection::FlankPoint>& placed, int zone, int side) {
-  std::vector<face_gear::FlankDeviation> nominal;
+Result<modification::ScatteredFit> fit_of(const face_gear::FaceGear& gear,
+                                          const std::vector<inspection::InspectionPoint>& grid,
+                                          const std::vector<inspection::FlankPoint>& placed, int zone, int side) {
+  std::vector<modification::FlankDeviation> nominal;
   for (const auto& p : grid)
     if (p.zone == zone && p.side == side) nominal.push_back({p.row, p.column, p.theta, radius(p.p), 0});
-  std::vector<face_gear::ScatteredDeviation> points;
+  std::vector<modification::ScatteredDeviation> points;
   for (const auto& p : placed)
     if (p.zone == zone && p.side == side) points.push_back({p.tooth, p.theta, p.radius_mm, p.deviation_mm});
-  return face_gear::FlankCorrection::fit_scattered(points, nominal,
-                                                   gear.rings()[std::size_t(zone)].surface.shaper.theta_t);
+  return modification::FlankCorrection::fit_scattered(points, nominal,
+                                                      gear.rings()[std::size_t(zone)].surface.shaper.theta_t);
 }
 
 TEST(MeasuredPoints, PitchAndRunOutOfPlantedErrorsAreFoundAgain) {
@@ -289,14 +289,14 @@ TEST(ScatteredCorrection, SaysWhatIsMissing) {
   const auto gear = test::made(test::small_spur());
   const auto grid = test::grid_of(gear, 5, 9), fine = test::grid_of(gear, 20, 20);
   const double theta_t = gear.rings()[0].surface.shaper.theta_t;
-  std::vector<face_gear::FlankDeviation> nominal;
+  std::vector<modification::FlankDeviation> nominal;
   for (const auto& p : grid)
     if (p.side > 0) nominal.push_back({p.row, p.column, p.theta, radius(p.p), 0});
   const auto fit = [&](const std::function<bool(const inspection::InspectionPoint&)>& kept) {
-    std::vector<face_gear::ScatteredDeviation> points;
+    std::vector<modification::ScatteredDeviation> points;
     for (const auto& p : fine)
       if (p.side > 0 && kept(p)) points.push_back({0, p.theta, radius(p.p), 0.01});
-    const auto f = face_gear::FlankCorrection::fit_scattered(points, nominal, theta_t);
+    const auto f = modification::FlankCorrection::fit_scattered(points, nominal, theta_t);
     return f ? std::string("fits") : f.error().message;
   };
   EXPECT_EQ(fit([](const auto&) { return true; }), "fits");

@@ -1,4 +1,4 @@
-#include "geometry/face_gear/flank_correction.h"
+#include "geometry/modification/flank_correction.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-namespace toothpath::face_gear {
+namespace toothpath::modification {
 namespace {
 
 constexpr int kLeastLevels = 5, kLeastPlaces = 9;  // along the profile, along the face
@@ -106,8 +106,7 @@ Eigen::VectorXd solve_out_of_noise(const Eigen::ColPivHouseholderQR<Eigen::Matri
 
 }  // namespace
 
-const modification::SmoothCurve& FlankCorrection::chebyshev(std::size_t k) {
-  using modification::SmoothCurve;
+const SmoothCurve& FlankCorrection::chebyshev(std::size_t k) {
   static const std::vector<SmoothCurve> kCurves = [] {
     std::vector<std::array<double, SmoothCurve::kMostTerms>> c(SmoothCurve::kMostTerms);
     c[0][0] = c[1][1] = 1;
@@ -131,11 +130,11 @@ Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> poi
   std::set<int> rows, columns;
   Range radii;
   for (const auto& p : points) {
-    if (!std::isfinite(p.theta) || !std::isfinite(p.radius_mm) || !std::isfinite(p.deviation_mm))
+    if (!std::isfinite(p.theta) || !std::isfinite(p.along_mm) || !std::isfinite(p.deviation_mm))
       return fail("row {}, column {}: the deviation or its place is not finite", p.row, p.column);
     rows.insert(p.row);
     columns.insert(p.column);
-    radii.add(p.radius_mm);
+    radii.add(p.along_mm);
   }
   if (int(rows.size()) < kLeastLevels || int(columns.size()) < kLeastPlaces)
     return fail("{} rows x {} columns are too few to fit, at least {} x {} are needed", rows.size(), columns.size(),
@@ -148,10 +147,10 @@ Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> poi
   f.fit_top(points, *rows.rbegin());
 
   Range s;
-  for (const auto& p : points) s.add(f.profile_at(p.theta, p.radius_mm));
+  for (const auto& p : points) s.add(f.profile_at(p.theta, p.along_mm));
   f.s_mid_ = s.middle();
   f.s_half_ = s.half();
-  constexpr int kMost = int(modification::SmoothCurve::kMostTerms) - 1;
+  constexpr int kMost = int(SmoothCurve::kMostTerms) - 1;
   f.profile_ = std::clamp(std::min(most.profile, kMost), 0, int(rows.size()) - 2);
   f.lead_ = std::clamp(std::min(most.lead, kMost), 0, int(columns.size()) - 3);
 
@@ -159,8 +158,8 @@ Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> poi
   return f;
 }
 
-double FlankCorrection::profile_at(double theta, double radius_mm) const {
-  return (theta_t_ - theta) / (theta_t_ - top_((radius_mm - r_mid_) / r_half_));
+double FlankCorrection::profile_at(double theta, double along_mm) const {
+  return (theta_t_ - theta) / (theta_t_ - top_((along_mm - r_mid_) / r_half_));
 }
 
 /// theta at the tip over the radius: the top row of the grid, which keeps a margin; the scale of s takes that up.
@@ -171,16 +170,16 @@ void FlankCorrection::fit_top(std::span<const FlankDeviation> points, int top_ro
   Eigen::MatrixXd V(Eigen::Index(tops.size()), 4);
   Eigen::VectorXd w(Eigen::Index(tops.size()));
   for (Eigen::Index k = 0; k < V.rows(); ++k) {
-    const double y = (tops[std::size_t(k)]->radius_mm - r_mid_) / r_half_;
+    const double y = (tops[std::size_t(k)]->along_mm - r_mid_) / r_half_;
     V.row(k) << 1, y, y * y, y * y * y;
     w[k] = tops[std::size_t(k)]->theta;
   }
   const Eigen::VectorXd line = V.colPivHouseholderQr().solve(w);
-  top_ = modification::SmoothCurve({-1, 1}, {{0, {line[0], line[1], line[2], line[3]}}});
+  top_ = SmoothCurve({-1, 1}, {{0, {line[0], line[1], line[2], line[3]}}});
 }
 
-void FlankCorrection::products_at(double theta, double radius_mm, Eigen::Ref<Eigen::RowVectorXd> row) const {
-  const double x = (profile_at(theta, radius_mm) - s_mid_) / s_half_, y = (radius_mm - r_mid_) / r_half_;
+void FlankCorrection::products_at(double theta, double along_mm, Eigen::Ref<Eigen::RowVectorXd> row) const {
+  const double x = (profile_at(theta, along_mm) - s_mid_) / s_half_, y = (along_mm - r_mid_) / r_half_;
   Eigen::Index column = 0;
   for (std::size_t i = 0; i <= std::size_t(profile_); ++i)
     for (std::size_t j = 0; j <= std::size_t(lead_); ++j) row[column++] = chebyshev(i)(x) * chebyshev(j)(y);
@@ -193,7 +192,7 @@ void FlankCorrection::fit_series(std::span<const FlankDeviation> points) {
   Eigen::RowVectorXd row(width);
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto& p = points[std::size_t(k)];
-    products_at(p.theta, p.radius_mm, row);
+    products_at(p.theta, p.along_mm, row);
     A.row(k) = row;
     b[k] = -p.deviation_mm;
   }
@@ -209,9 +208,9 @@ void FlankCorrection::fit_series(std::span<const FlankDeviation> points) {
   residual_.residual_rms_mm = std::sqrt(left.squaredNorm() / double(n));
 }
 
-FlankCorrection::Offset FlankCorrection::at(double theta, double radius_mm) const {
+FlankCorrection::Offset FlankCorrection::at(double theta, double along_mm) const {
   using Dual2 = Dual<double, 2>;
-  const Dual2 c = offset(Dual2::variable(theta, 0), Dual2::variable(radius_mm, 1));
+  const Dual2 c = offset(Dual2::variable(theta, 0), Dual2::variable(along_mm, 1));
   return {c.v, c.d[0], c.d[1]};
 }
 
@@ -219,7 +218,7 @@ Result<ScatteredFit> FlankCorrection::fit_scattered(std::span<const ScatteredDev
                                                     std::span<const FlankDeviation> nominal, double theta_t,
                                                     CorrectionDegrees most) {
   for (const auto& p : points)
-    if (!std::isfinite(p.theta) || !std::isfinite(p.radius_mm) || !std::isfinite(p.deviation_mm))
+    if (!std::isfinite(p.theta) || !std::isfinite(p.along_mm) || !std::isfinite(p.deviation_mm))
       return fail("tooth {}: a deviation or its place is not finite", p.tooth);
   if (points.size() < kLeastPoints)
     return fail("{} points are too few to fit, at least {} are needed", points.size(), kLeastPoints);
@@ -229,22 +228,22 @@ Result<ScatteredFit> FlankCorrection::fit_scattered(std::span<const ScatteredDev
   std::vector<double> grid_radii, grid_profile, radii, profile;
   for (const auto& p : nominal) {
     top_row = std::max(top_row, p.row);
-    grid_radii.push_back(p.radius_mm);
+    grid_radii.push_back(p.along_mm);
   }
-  for (const auto& p : points) radii.push_back(p.radius_mm);
+  for (const auto& p : points) radii.push_back(p.along_mm);
   if (const auto s = covered(radii, grid_radii, "face width"); !s) return s.error();
   const Range along(radii);
   f.r_mid_ = along.middle();
   f.r_half_ = along.half();
   f.fit_top(nominal, top_row);  // the line of the tip is the grid's
-  for (const auto& p : nominal) grid_profile.push_back(f.profile_at(p.theta, p.radius_mm));
-  for (const auto& p : points) profile.push_back(f.profile_at(p.theta, p.radius_mm));
+  for (const auto& p : nominal) grid_profile.push_back(f.profile_at(p.theta, p.along_mm));
+  for (const auto& p : points) profile.push_back(f.profile_at(p.theta, p.along_mm));
   if (const auto s = covered(profile, grid_profile, "height of the flank"); !s) return s.error();
   const int levels = levels_of(profile), places = levels_of(radii);
   if (levels < kLeastLevels || places < kLeastPlaces)
     return fail("the points lie at {} heights and {} radii, at least {} and {} are needed", levels, places,
                 kLeastLevels, kLeastPlaces);
-  constexpr int kMost = int(modification::SmoothCurve::kMostTerms) - 1;
+  constexpr int kMost = int(SmoothCurve::kMostTerms) - 1;
   f.profile_ = std::clamp(std::min(most.profile, kMost), 0, levels - 2);
   f.lead_ = std::clamp(std::min(most.lead, kMost), 0, places - 3);
   return f.fit_teeth(points, Range(profile).low, Range(profile).high);
@@ -267,7 +266,7 @@ Result<ScatteredFit> FlankCorrection::fit_teeth(std::span<const ScatteredDeviati
   std::map<int, Tooth> teeth;
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto& p = points[std::size_t(k)];
-    products_at(p.theta, p.radius_mm, row);
+    products_at(p.theta, p.along_mm, row);
     A.row(k) = row;
     b[k] = p.deviation_mm;
     Tooth& tooth = teeth[p.tooth];
@@ -337,8 +336,7 @@ void FlankCorrection::note_middles(std::span<const ScatteredDeviation> points, c
   std::map<int, Plane> planes;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto& p = points[k];
-    const Eigen::Vector3d row(1, (profile_at(p.theta, p.radius_mm) - s_mid_) / s_half_,
-                              (p.radius_mm - r_mid_) / r_half_);
+    const Eigen::Vector3d row(1, (profile_at(p.theta, p.along_mm) - s_mid_) / s_half_, (p.along_mm - r_mid_) / r_half_);
     planes[p.tooth].A += row * row.transpose();
     planes[p.tooth].b += row * rest[Eigen::Index(k)];
   }
@@ -350,4 +348,4 @@ void FlankCorrection::note_middles(std::span<const ScatteredDeviation> points, c
   }
 }
 
-}  // namespace toothpath::face_gear
+}  // namespace toothpath::modification

@@ -7,10 +7,10 @@
 #include <random>
 
 #include "geometry/base/angle.h"
-#include "geometry/face_gear/flank_correction.h"
 #include "geometry/face_gear/part.h"
 #include "geometry/face_gear/space_sheet.h"
 #include "geometry/inspection/grid.h"
+#include "geometry/modification/flank_correction.h"
 #include "tests/support/sample_gears.h"
 
 namespace toothpath {
@@ -23,9 +23,9 @@ face_gear::FaceGear gear_of(double offset, double helix_deg, double shaft_deg) {
   return test::made(g);
 }
 
-std::vector<face_gear::FlankDeviation> field_on_grid(const face_gear::FaceGear& gear, int side,
-                                                     const std::function<double(double, double)>& field) {
-  std::vector<face_gear::FlankDeviation> out;
+std::vector<modification::FlankDeviation> field_on_grid(const face_gear::FaceGear& gear, int side,
+                                                        const std::function<double(double, double)>& field) {
+  std::vector<modification::FlankDeviation> out;
   const auto grid = inspection::inspection_grid(drawn_solid(gear));
   EXPECT_TRUE(grid);
   for (const auto& p : *grid)
@@ -40,25 +40,25 @@ double rough(double x, double y) {
   return 0.02 * (0.4 * (2 * y - 1) + 0.5 * (2 * y - 1) * (2 * y - 1) * (1 - x) - 0.3 * x * x + 0.2 * std::sin(3 * y));
 }
 
-std::shared_ptr<const face_gear::RingCorrection> correction_of(const face_gear::FaceGear& gear) {
+std::shared_ptr<const modification::RingCorrection> correction_of(const face_gear::FaceGear& gear) {
   const double theta_t = gear.rings()[0].surface.shaper.theta_t;
-  face_gear::RingCorrection both;
-  both.plus = *face_gear::FlankCorrection::fit(field_on_grid(gear, 1, rough), theta_t);
-  both.minus = *face_gear::FlankCorrection::fit(
+  modification::RingCorrection both;
+  both.plus = *modification::FlankCorrection::fit(field_on_grid(gear, 1, rough), theta_t);
+  both.minus = *modification::FlankCorrection::fit(
       field_on_grid(gear, -1, [](double x, double y) { return -rough(y, x); }), theta_t);
-  return std::make_shared<face_gear::RingCorrection>(both);
+  return std::make_shared<modification::RingCorrection>(both);
 }
 
 TEST(FlankCorrection, HoldsAPolynomialExactlyAndStatesWhatIsLeft) {
   const auto gear = gear_of(15, 0, 90);
   const double theta_t = gear.rings()[0].surface.shaper.theta_t;
-  const auto fit = face_gear::FlankCorrection::fit(field_on_grid(gear, 1, rough), theta_t);
+  const auto fit = modification::FlankCorrection::fit(field_on_grid(gear, 1, rough), theta_t);
   ASSERT_TRUE(fit);
   EXPECT_EQ(fit->residual().points, 45u);
   EXPECT_GT(fit->residual().measured_max_mm, 0.015);
   EXPECT_LT(fit->residual().residual_max_mm, 5e-6);  // sin(3 y) beyond the sixth degree, and a top line that is a cubic
   // Alternating noise cannot be followed: the residual says so.
-  const auto noise = face_gear::FlankCorrection::fit(
+  const auto noise = modification::FlankCorrection::fit(
       field_on_grid(
           gear, 1,
           [](double x, double y) { return (int(std::lround(4 * x)) + int(std::lround(8 * y))) % 2 ? 1e-3 : -1e-3; }),
@@ -74,7 +74,7 @@ TEST(FlankCorrection, NoiseIsLeftOutAndShapeStays) {
   std::mt19937 engine(7);
   std::normal_distribution<double> noise(0, kNoise);
   const auto fit = [&](const std::function<double(double, double)>& shape) {
-    const auto made = face_gear::FlankCorrection::fit(
+    const auto made = modification::FlankCorrection::fit(
         field_on_grid(gear, 1, [&](double x, double y) { return shape(x, y) + noise(engine); }), theta_t);
     EXPECT_TRUE(made);
     return *made;
@@ -84,29 +84,29 @@ TEST(FlankCorrection, NoiseIsLeftOutAndShapeStays) {
   for (int k = 0; k < 40; ++k) {
     const auto even = fit([](double, double) { return 0.004; });
     EXPECT_NEAR(even.at(theta_t, 131.5).value, -0.004, 1e-3);
-    bent += even.at(theta_t, 131.5).d_theta != 0 || even.at(theta_t, 131.5).d_radius != 0;
+    bent += even.at(theta_t, 131.5).d_theta != 0 || even.at(theta_t, 131.5).d_along != 0;
   }
   EXPECT_LE(bent, 2) << "one of a hundred is expected";
   // What is larger than the noise is followed within it.
   const auto slope = fit(rough);
-  const auto exact = face_gear::FlankCorrection::fit(field_on_grid(gear, 1, rough), theta_t);
+  const auto exact = modification::FlankCorrection::fit(field_on_grid(gear, 1, rough), theta_t);
   double off = 0;
   for (const auto& p : field_on_grid(gear, 1, rough))
-    off = std::max(off, std::abs(slope.at(p.theta, p.radius_mm).value - exact->at(p.theta, p.radius_mm).value));
+    off = std::max(off, std::abs(slope.at(p.theta, p.along_mm).value - exact->at(p.theta, p.along_mm).value));
   EXPECT_LT(off, 4 * kNoise);
 }
 
 TEST(FlankCorrection, DerivativesAreThoseOfTheValue) {
   const auto gear = gear_of(15, 0, 90);
   const auto fit =
-      face_gear::FlankCorrection::fit(field_on_grid(gear, -1, rough), gear.rings()[0].surface.shaper.theta_t);
+      modification::FlankCorrection::fit(field_on_grid(gear, -1, rough), gear.rings()[0].surface.shaper.theta_t);
   ASSERT_TRUE(fit);
   for (const double theta : {-0.05, 0.02, 0.2, 0.4, 0.56, 0.7})
     for (const double r : {120.0, 131.0, 133.0, 140.0, 144.5, 150.0}) {
       const double h = 1e-5, k = 1e-4;
       const auto at = fit->at(theta, r);
       EXPECT_NEAR(at.d_theta, (fit->at(theta + h, r).value - fit->at(theta - h, r).value) / (2 * h), 1e-7);
-      EXPECT_NEAR(at.d_radius, (fit->at(theta, r + k).value - fit->at(theta, r - k).value) / (2 * k), 1e-8);
+      EXPECT_NEAR(at.d_along, (fit->at(theta, r + k).value - fit->at(theta, r - k).value) / (2 * k), 1e-8);
     }
 }
 
@@ -114,11 +114,11 @@ TEST(FlankCorrection, TooFewPointsAndWildNumbersAreRefused) {
   const auto gear = gear_of(15, 0, 90);
   auto points = field_on_grid(gear, 1, rough);
   auto few = points;
-  std::erase_if(few, [](const face_gear::FlankDeviation& p) { return p.row == 2; });
-  EXPECT_EQ(face_gear::FlankCorrection::fit(few, 0.6).error().message,
+  std::erase_if(few, [](const modification::FlankDeviation& p) { return p.row == 2; });
+  EXPECT_EQ(modification::FlankCorrection::fit(few, 0.6).error().message,
             "4 rows x 9 columns are too few to fit, at least 5 x 9 are needed");
   points[7].deviation_mm = NAN;
-  EXPECT_EQ(face_gear::FlankCorrection::fit(points, 0.6).error().message,
+  EXPECT_EQ(modification::FlankCorrection::fit(points, 0.6).error().message,
             "row 0, column 7: the deviation or its place is not finite");
 }
 
