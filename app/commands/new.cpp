@@ -112,7 +112,8 @@ DoneOrErrors wish_number(Wishes& wishes, const Question& question, std::optional
     wishes[question.what] = answer.value();
     const auto swing = proposal::least_swing_mm(wishes);
     if (!swing || swing == before) return Ok{};
-    if (question.what == Quantity::outer || wishes.gear == proposal::Gear::bevel_herringbone)
+    if (question.what == Quantity::outer || wishes.gear == proposal::Gear::bevel_herringbone ||
+        wishes.gear == proposal::Gear::straight_bevel)
       dialog.tell(proposal::swing_of(machine, *swing));
     const Status turns = proposal::check_swing(machine, *swing);
     if (turns) return Ok{};

@@ -13,6 +13,11 @@
 namespace toothpath::proposal {
 namespace {
 
+constexpr double kBevelClearance = 0.05;                                 // mm
+constexpr double kBevelRoundings[] = {0.3, 0.25, 0.2, 0.15, 0.1, 0.05};  // modules
+
+double rounded(double x) { return std::round(1e4 * x) / 1e4; }
+
 constexpr double kGrooveModules = 1.6;      // between the rings of a double helical gear
 constexpr double kRoughingAllowance = 0.1;  // modules
 
@@ -89,9 +94,36 @@ cylindrical::CylindricalParameters cylindrical_parameters(const Wishes& wishes) 
   return p;
 }
 
+straight_bevel::StraightBevelParameters straight_bevel_parameters(const Wishes& wishes) {
+  // Gleason's system of straight bevel gears: whole depth 2.188 m + 0.05 mm, addendum of the wheel 0.54 m + 0.46 m
+  // (z_1/z_2)^2, face cone parallel to the root cone of the mate. Thickness by the rack of the same shift.
+  const double m = wishes.at(Quantity::module), z = wishes.at(Quantity::teeth), mate = wishes.at(Quantity::mate_teeth),
+               ratio = std::min(z, mate) / std::max(z, mate), of_wheel = m * (0.54 + 0.46 * ratio * ratio),
+               clearance = 0.188 * m + kBevelClearance;
+  straight_bevel::StraightBevelParameters p;
+  p.teeth = static_cast<int>(z);
+  p.pitch_angle_rad = std::atan2(z, mate);
+  p.outer_transverse_module_mm = m;
+  p.pressure_angle_rad = radians(wishes.at(Quantity::pressure_angle));
+  p.face_width_mm = wishes.at(Quantity::face_width);
+  p.addendum_mm = rounded(z <= mate ? 2 * m - of_wheel : of_wheel);
+  p.dedendum_mm = rounded(2 * m + clearance - p.addendum_mm);
+  const double R_e = 0.5 * m * z / std::sin(p.pitch_angle_rad);
+  p.tip_angle_rad = radians(rounded(degrees(p.pitch_angle_rad + std::atan((p.addendum_mm + clearance) / R_e))));
+  p.thickness_shift = rounded((p.addendum_mm / m - 1) * std::tan(p.pressure_angle_rad));
+  for (const double share : kBevelRoundings) {
+    p.fillet_radius_mm = rounded(share * m);
+    const auto made = straight_bevel::StraightBevelGear::make(p);
+    const auto* refusals = made.refused();
+    if (!refusals ||
+        std::none_of(refusals->begin(), refusals->end(), [](const Refusal& r) { return r.key == "fillet_radius"; }))
+      break;
+  }
+  return p;
+}
+
 std::optional<FaceRange> face_range(const Wishes& wishes) {
-  if (!wishes.gear || *wishes.gear == Gear::bevel_herringbone || *wishes.gear == Gear::cylindrical || !complete(wishes))
-    return std::nullopt;
+  if (!wishes.gear || *wishes.gear > Gear::offset || !complete(wishes)) return std::nullopt;
   const face_gear::FaceGearParameters p = face_parameters(wishes);
   FaceRange range{0, 1e9, 1e9, ""};
   for (const int hand : {-1, 1}) {
@@ -123,6 +155,13 @@ FaceFacts cylindrical_facts(const cylindrical::CylindricalGear& gear) {
   FaceFacts facts;
   facts.depth = 0.5 * (gear.tip_diameter() - gear.root_diameter());
   add_balls(cylindrical::part_of(gear), facts);
+  return facts;
+}
+
+FaceFacts straight_bevel_facts(const straight_bevel::StraightBevelGear& gear) {
+  FaceFacts facts;
+  facts.depth = gear.parameters().addendum_mm + gear.parameters().dedendum_mm;
+  add_balls(straight_bevel::part_of(gear), facts);
   return facts;
 }
 

@@ -7,6 +7,7 @@
 #include "geometry/bevel_gear/parameters.h"
 #include "geometry/cylindrical/gear.h"
 #include "geometry/face_gear/gear.h"
+#include "geometry/straight_bevel/gear.h"
 
 namespace toothpath::proposal {
 
@@ -26,6 +27,9 @@ struct FaceRange {
 /// One zone about z = 0.
 [[nodiscard]] cylindrical::CylindricalParameters cylindrical_parameters(const Wishes& wishes);
 
+/// Gleason proportions for shafts at 90 deg, the largest rounding up to 0.3 modules that the crown gear's teeth carry.
+[[nodiscard]] straight_bevel::StraightBevelParameters straight_bevel_parameters(const Wishes& wishes);
+
 /// Nothing: no tooth has room, or numbers are missing.
 [[nodiscard]] std::optional<FaceRange> face_range(const Wishes& wishes);
 
@@ -41,5 +45,6 @@ struct FaceFacts {
 };
 [[nodiscard]] FaceFacts face_facts(const face_gear::FaceGear& gear);
 [[nodiscard]] FaceFacts cylindrical_facts(const cylindrical::CylindricalGear& gear);
+[[nodiscard]] FaceFacts straight_bevel_facts(const straight_bevel::StraightBevelGear& gear);
 
 }  // namespace toothpath::proposal

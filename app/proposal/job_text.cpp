@@ -73,6 +73,25 @@ std::string cylindrical_text(const Wishes& wishes) {
   return text;
 }
 
+std::string straight_bevel_text(const Wishes& wishes) {
+  const straight_bevel::StraightBevelParameters p = straight_bevel_parameters(wishes);
+  std::string text = "\n[gear]\ntype = \"straight_bevel_gear\"\n";
+  text += line("teeth", fmt::format("{}", p.teeth));
+  text += line("mate_teeth", fmt::format("{:.0f}", wishes.at(Quantity::mate_teeth)));
+  text += line("shaft_angle", "90.0");
+  text += line("outer_transverse_module", real(p.outer_transverse_module_mm));
+  text += line("pressure_angle", real(wishes.at(Quantity::pressure_angle)), "of the crown gear");
+  text += line("form", "\"octoid\"", "or \"spherical_involute\"");
+  text += line("face_width", real(p.face_width_mm), "along the pitch cone, from the large end inwards");
+  text += line("addendum", real(p.addendum_mm), "at the large end");
+  text += line("dedendum", real(p.dedendum_mm));
+  text += line("tip_angle", real(std::round(1e4 * degrees(*p.tip_angle_rad)) / 1e4), "of the face cone");
+  text += line("thickness_shift", real(p.thickness_shift), "half of the tooth's excess, in modules");
+  text += line("fillet_radius", real(p.fillet_radius_mm), "rounding of the crown gear's teeth: the fillet");
+  text += line("backlash", "0.0", "of the pair, on the outer pitch circle");
+  return text;
+}
+
 std::string bevel_text(const Wishes& wishes) {
   const bevel_gear::BevelGearParameters p = bevel_parameters(wishes);
   std::string text = "\n[gear]\ntype = \"equal_base_circle_bevel_gear\"\n";
@@ -235,11 +254,13 @@ std::string gear_text(const std::string& name, const Wishes& wishes) {
   return fmt::format("schema = 1\nname = {}\n", toml::quoted(name)) +
          (wishes.gear == Gear::bevel_herringbone ? bevel_text(wishes)
           : wishes.gear == Gear::cylindrical     ? cylindrical_text(wishes)
+          : wishes.gear == Gear::straight_bevel  ? straight_bevel_text(wishes)
                                                  : face_text(wishes));
 }
 
 std::string job_text(const Draft& draft, const LibraryWords& library, const std::string& schema) {
-  const bool bevel = draft.wishes.gear == Gear::bevel_herringbone;
+  const bool finger = draft.wishes.gear == Gear::bevel_herringbone,
+             bevel = finger || draft.wishes.gear == Gear::straight_bevel;
   std::string text = schema.empty() ? std::string() : fmt::format("#:schema {}\n", schema);
   text += "# Lengths in mm, angles in degrees, feeds in mm/min, speeds in 1/min. All keys: docs/job_reference.md.\n" +
           gear_text(draft.name, draft.wishes) + machine_table(draft);
@@ -257,7 +278,7 @@ std::string job_text(const Draft& draft, const LibraryWords& library, const std:
   };
   if (draft.has_first) text += tool(draft.first);
   text += tool(draft.second);
-  text += bevel ? finger_operations(draft) : face_operations(draft);
+  text += finger ? finger_operations(draft) : face_operations(draft);
   return text + "\n[verify]\n" +
          line("gouge_tolerance", draft.coarse ? "0.005" : "0.002", "a program that may cut deeper is not written") +
          line("teeth", "\"one\"", "or \"all\": every tooth space is walked through");

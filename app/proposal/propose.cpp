@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "geometry/base/angle.h"
+#include "geometry/tooth_space/bevel_body.h"
 #include "machines/machine_file.h"
 #include "machines/shaper_machine.h"
 #include "postproc/controls/of_machine.h"
@@ -91,6 +92,29 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_cylindrical(const Wishes& w
                  true,
                  cylinder_places(zone.from_mm, zone.to_mm, 0.5 * gear.root_diameter(), 0.5 * gear.tip_diameter()),
                  gear.parameters().teeth};
+  return chosen;
+}
+
+double straight_bevel_diameter_mm(const straight_bevel::StraightBevelParameters& p) {
+  return p.outer_transverse_module_mm * p.teeth + 2 * p.addendum_mm * std::cos(p.pitch_angle_rad);
+}
+
+Expected<ChosenGear, std::vector<Diagnostic>> choose_straight_bevel(const Wishes& wishes) {
+  auto made = straight_bevel::StraightBevelGear::make(straight_bevel_parameters(wishes));
+  if (auto* refusals = made.refused()) return located(std::move(*refusals));
+  const straight_bevel::StraightBevelGear& gear = made.value();
+  const auto& p = gear.parameters();
+  const auto& w = gear.space().kernel();
+  ChosenGear chosen;
+  chosen.diameter_mm = straight_bevel_diameter_mm(p);
+  chosen.facts = straight_bevel_facts(gear);
+  const auto [front, back] = tooth_space::body_ends(gear.space(), gear.body());
+  chosen.part = {0.5 * chosen.diameter_mm,
+                 std::min(front, back),
+                 std::max(front, back),
+                 false,
+                 finger_places(w.R_i, w.R_e, p.pitch_angle_rad, p.dedendum_mm),
+                 p.teeth};
   return chosen;
 }
 
@@ -230,6 +254,7 @@ Expected<ChosenMachine, std::vector<Diagnostic>> choose_machine(const Wishes& wi
 
 Expected<ChosenGear, std::vector<Diagnostic>> choose_gear(const Wishes& wishes) {
   if (wishes.gear == Gear::cylindrical) return choose_cylindrical(wishes);
+  if (wishes.gear == Gear::straight_bevel) return choose_straight_bevel(wishes);
   return wishes.gear == Gear::bevel_herringbone ? choose_bevel(wishes) : choose_face(wishes);
 }
 
@@ -255,7 +280,8 @@ std::optional<double> least_swing_mm(const Wishes& wishes) {
       if (!wishes[known]) return std::nullopt;
     return tip_diameter_mm(cylindrical_parameters(wishes));
   }
-  if (*wishes.gear != Gear::bevel_herringbone) {
+  const bool straight = *wishes.gear == Gear::straight_bevel;
+  if (!straight && *wishes.gear != Gear::bevel_herringbone) {
     const auto end = wishes[Quantity::outer] ? wishes[Quantity::outer] : wishes[Quantity::inner];
     if (end) return 2 * *end;
     const auto range = face_range(wishes);
@@ -263,7 +289,8 @@ std::optional<double> least_swing_mm(const Wishes& wishes) {
   }
   for (const Quantity known : {Quantity::teeth, Quantity::mate_teeth, Quantity::module})
     if (!wishes[known]) return std::nullopt;
-  return bevel_diameter_mm(bevel_parameters(wishes));
+  return straight ? straight_bevel_diameter_mm(straight_bevel_parameters(wishes))
+                  : bevel_diameter_mm(bevel_parameters(wishes));
 }
 
 Status check_swing(const ChosenMachine& machine, double diameter_mm) {

@@ -10,12 +10,14 @@
 namespace toothpath::proposal {
 namespace {
 
-constexpr std::string_view kGearWords[] = {"face", "double_helical", "offset", "bevel_herringbone", "cylindrical"};
+constexpr std::string_view kGearWords[] = {"face",        "double_helical", "offset", "bevel_herringbone",
+                                           "cylindrical", "straight_bevel"};
 constexpr std::string_view kRouteWords[] = {"ball", "line", "shaped", "finger"};
 constexpr Route kFaceRoutes[] = {Route::line, Route::ball, Route::shaped};
 constexpr Route kDoubleRoutes[] = {Route::line, Route::ball};
 constexpr Route kBevelRoutes[] = {Route::finger};
-constexpr Route kCylindricalRoutes[] = {Route::ball};
+constexpr Route kBallRoutes[] = {Route::ball};
+constexpr Route kStraightBevelRoutes[] = {Route::ball, Route::line};
 
 constexpr Question kQuestions[] = {
     {Quantity::teeth, "--teeth", "teeth of the gear", {10, 1000}, true},
@@ -103,7 +105,8 @@ std::span<const Route> routes_of(Gear gear) {
     case Gear::offset: return kFaceRoutes;
     case Gear::double_helical: return kDoubleRoutes;
     case Gear::bevel_herringbone: return kBevelRoutes;
-    case Gear::cylindrical: return kCylindricalRoutes;
+    case Gear::cylindrical: return kBallRoutes;
+    case Gear::straight_bevel: return kStraightBevelRoutes;
   }
   return {};
 }
@@ -114,13 +117,14 @@ std::string_view word_of(Route route) { return kRouteWords[static_cast<std::size
 std::span<const Question> questions() { return kQuestions; }
 
 bool belongs(const Question& question, Gear gear) {
-  const bool bevel = gear == Gear::bevel_herringbone, cylindrical = gear == Gear::cylindrical;
+  const bool herringbone = gear == Gear::bevel_herringbone, cylindrical = gear == Gear::cylindrical,
+             bevel = herringbone || gear == Gear::straight_bevel;
   switch (question.what) {
     case Quantity::teeth:
     case Quantity::module:
     case Quantity::pressure_angle: return true;
-    case Quantity::mate_teeth:
-    case Quantity::spiral: return bevel;
+    case Quantity::mate_teeth: return bevel;
+    case Quantity::spiral: return herringbone;
     case Quantity::face_width: return bevel || cylindrical;
     case Quantity::profile_shift: return cylindrical;
     case Quantity::offset: return gear == Gear::offset;

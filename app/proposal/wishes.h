@@ -11,7 +11,7 @@
 
 namespace toothpath::proposal {
 
-enum class Gear : std::uint8_t { face, double_helical, offset, bevel_herringbone, cylindrical };
+enum class Gear : std::uint8_t { face, double_helical, offset, bevel_herringbone, cylindrical, straight_bevel };
 enum class Route : std::uint8_t {
   ball,    ///< ball mills alone
   line,    ///< flanks by the side of a tapered mill

@@ -89,6 +89,10 @@ INSTANTIATE_TEST_SUITE_P(
         gear("offset", "shaped", "y514", {"--teeth", "88", "--module", "3"}),
         gear("double_helical", "ball", "heidenhain_ac", {"--teeth", "60", "--module", "1.5"}),
         gear("double_helical", "line", "xyzac_large", {"--teeth", "60", "--module", "1.5"}),
+        gear("cylindrical", "ball", "xyzac_large", {"--teeth", "12", "--module", "2.5"}),  // undercut without a shift
+        gear("cylindrical", "ball", "head_table_bc", {"--teeth", "30", "--module", "2", "--helix", "20"}),
+        gear("straight_bevel", "ball", "xyzac_trt", {"--teeth", "20", "--mate-teeth", "40", "--module", "2"}),
+        gear("straight_bevel", "line", "head_table_bc", {"--teeth", "30", "--mate-teeth", "20", "--module", "2"}),
         gear("bevel_herringbone", "finger", "fanuc_ac", {"--teeth", "18", "--mate-teeth", "27", "--module", "2"}),
         gear("bevel_herringbone", "finger", "m80_ac", {"--teeth", "24", "--mate-teeth", "36", "--module", "3.4"}),
         gear("bevel_herringbone", "finger", "xyzbc_trt", {"--teeth", "18", "--mate-teeth", "27", "--module", "2"})));
