@@ -94,10 +94,27 @@ bool more_at_a_corner(std::size_t most, std::size_t points, const Soup& soup) {
   return false;
 }
 
+/// Do two facets of a manifold mesh cross? CGAL looks through every facet of the mesh that it is asked of, so it gets one
+/// of these two alone, joined as they are.
+bool cross(const std::vector<Vec3>& points, const Soup::value_type& a, const Soup::value_type& b) {
+  SurfaceMesh two;
+  std::array<SurfaceMesh::Vertex_index, 3> of_a, of_b;
+  const auto added = [&](std::size_t p) {
+    return two.add_vertex(Kernel::Point_3(points[p].x(), points[p].y(), points[p].z()));
+  };
+  std::transform(a.begin(), a.end(), of_a.begin(), added);
+  std::transform(b.begin(), b.end(), of_b.begin(), [&](std::size_t p) {
+    const auto same = std::find(a.begin(), a.end(), p);
+    return same == a.end() ? added(p) : of_a[std::size_t(same - a.begin())];
+  });
+  const std::array both{two.add_face(of_a), two.add_face(of_b)};
+  return pmp::does_self_intersect(both, two);
+}
+
 /// Looks at all pairs of facets whose boxes meet; are there more than `most`? The exact question is asked of those that
 /// are not surely apart.
-bool more_pairs_than(std::size_t most, const std::vector<Vec3>& points, const Soup& soup, const SurfaceMesh& mesh,
-                     std::size_t most_crossing, MeshCheck& check) {
+bool more_pairs_than(std::size_t most, const std::vector<Vec3>& points, const Soup& soup, std::size_t most_crossing,
+                     MeshCheck& check) {
   if (more_at_a_corner(most, points.size(), soup)) return true;
   using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, std::uint32_t>;
   std::vector<Box> boxes;
@@ -107,10 +124,6 @@ bool more_pairs_than(std::size_t most, const std::vector<Vec3>& points, const So
     const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
     boxes.emplace_back(CGAL::Bbox_3(low.x(), low.y(), low.z(), high.x(), high.y(), high.z()), std::uint32_t(t));
   }
-  const auto cross = [&](std::uint32_t s, std::uint32_t t) {
-    const std::array<SurfaceMesh::Face_index, 2> both{SurfaceMesh::Face_index(s), SurfaceMesh::Face_index(t)};
-    return pmp::does_self_intersect(both, mesh);
-  };
   std::size_t pairs = 0;
   try {
     CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
@@ -118,7 +131,7 @@ bool more_pairs_than(std::size_t most, const std::vector<Vec3>& points, const So
       const std::uint32_t s = a.info(), t = b.info();
       if (!check.manifold || check.self_intersections >= most_crossing || surely_apart(points, soup[s], soup[t]))
         return;
-      if (cross(s, t) && check.self_intersections++ == 0) check.first_intersection = {s, t};
+      if (cross(points, soup[s], soup[t]) && check.self_intersections++ == 0) check.first_intersection = {s, t};
     });
   } catch (const Enough&) { return true; }
   return false;
@@ -145,7 +158,7 @@ std::size_t check_soup(const std::vector<Vec3>& points, const Soup& soup, const 
   }
   if (!options.self_intersections) return 0;
   const std::size_t most = std::max(options.most_compared, options.most_compared_each * soup.size());
-  return more_pairs_than(most, points, soup, mesh, options.most_pairs, check) ? most : 0;
+  return more_pairs_than(most, points, soup, options.most_pairs, check) ? most : 0;
 }
 
 }  // namespace
