@@ -230,7 +230,7 @@ class RoughingPlanner {
         const double s = chart().along(q);
         if (s < ring.s_from || s > ring.s_to || chart().up(q) > o_.blank_top_mm) continue;
         if (std::none_of(cleared_.begin(), cleared_.end(),
-                         [&](const cut::Removed* removed) { return removed->excess(q, worth) < worth; }))
+                         [&](const cut::Removed* removed) { return removed->comes_within(q, worth); }))
           return true;
       }
     }

@@ -50,8 +50,8 @@ class Stock {
   [[nodiscard]] bool stands(const Vec3& p, std::size_t done, double least_mm) const {
     if (!q_.in_blank(p)) return false;
     for (const Removed* removed : q_.before)
-      if (removed->excess(p, least_mm) < least_mm) return false;
-    return own_.excess_after(done, p, least_mm) >= least_mm;
+      if (removed->comes_within(p, least_mm)) return false;
+    return !own_.comes_within(done, p, least_mm);
   }
   /// Of every motion, how many ahead of it cut.
   static std::vector<std::size_t> done_before(const std::vector<path::ToolMotion>& motions) {

@@ -72,7 +72,8 @@ std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions
 
 }  // namespace
 
-double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const path::ToolMotion& m, double enough) {
+double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const path::ToolMotion& m, double enough,
+                      double near) {
   const AtMoment first = at_moment(p, body, m, 0);
   // Seen from the tool, the place goes no farther than `way` + turn arm, and leaves the tangent of its way by no more
   // than `bends`; the distance is convex in the place, with a slope of 1 at most.
@@ -81,9 +82,10 @@ double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const pat
                turn = 2 * half / std::sqrt(1 - half * half),
                bends = 0.5 * (turn * turn * std::sqrt(1 + turn * turn) * arm + 2 * turn * way);
   if (first.distance + std::max(std::min(first.rate, 0.0) - bends, -way - turn * arm) > enough) return first.distance;
+  if (first.distance < near) return first.distance;
   const AtMoment last = at_moment(p, body, m, 1);
   double least = std::min(first.distance, last.distance);
-  if (first.rate >= 0 || last.rate <= 0) return least;
+  if (first.rate >= 0 || last.rate <= 0 || least < near) return least;
   // A tangent from either end bounds it from below.
   const double meet = (last.distance - last.rate - first.distance) / (first.rate - last.rate);
   if (first.distance + first.rate * meet - bends > enough) return least;
@@ -93,7 +95,7 @@ double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const pat
     x = std::clamp(x, a, b);
     const AtMoment q = at_moment(p, body, m, x);
     least = std::min(least, q.distance);
-    if (std::abs(q.rate) * (b - a) < 1e-10) break;
+    if (least < near || std::abs(q.rate) * (b - a) < 1e-10) break;
     (q.rate < 0 ? a : b) = x;
     (q.rate < 0 ? fa : fb) = q.rate;
   }
@@ -105,17 +107,30 @@ SweptTool::SweptTool(std::vector<path::ToolMotion> motions, std::vector<tool::Ro
       cutting_(std::move(cutting)),
       index_(boxes_of(motions_, cutting_, top_mm, owners_)) {}
 
-double SweptTool::excess_after(std::size_t count, const Vec3& p, double cap) const {
+double SweptTool::excess(const Vec3& p, double cap) const {
   double best = cap;
   std::array<std::size_t, kSeen> seen;
   seen.fill(SIZE_MAX);
   index_.near(p, std::max(cap, 0.0), [&](std::size_t box, double) {
     const std::size_t owner = owners_[box], k = owner / cutting_.size();
-    if (k >= count || std::exchange(seen[owner % kSeen], owner) == owner) return std::max(best, 0.0);
+    if (std::exchange(seen[owner % kSeen], owner) == owner) return std::max(best, 0.0);
     best = std::min(best, least_distance(p, cutting_[owner % cutting_.size()], motions_[k], best));
     return std::max(best, 0.0);
   });
   return best;
+}
+
+bool SweptTool::comes_within(std::size_t count, const Vec3& p, double near_mm) const {
+  bool near = false;
+  std::array<std::size_t, kSeen> seen;
+  seen.fill(SIZE_MAX);
+  index_.near(p, std::max(near_mm, 0.0), [&](std::size_t box, double radius) {
+    const std::size_t owner = owners_[box], k = owner / cutting_.size();
+    if (near || k >= count || std::exchange(seen[owner % kSeen], owner) == owner) return radius;
+    near = least_distance(p, cutting_[owner % cutting_.size()], motions_[k], near_mm, near_mm) < near_mm;
+    return near ? 0.0 : radius;
+  });
+  return near;
 }
 
 Removed::Removed(std::vector<path::ToolMotion> motions, const tool::ProofTool& tool, double top_mm) {
@@ -134,6 +149,11 @@ double Removed::excess(const Vec3& p, double cap) const {
   double e = balls_ ? balls_->excess(p, cap) : tool_->excess(p, cap);
   for (const Removed* other : others_) e = other->excess(p, e);
   return e;
+}
+
+bool Removed::comes_within(const Vec3& p, double near_mm) const {
+  return (balls_ ? balls_->excess(p, near_mm) < near_mm : tool_->comes_within(SIZE_MAX, p, near_mm)) ||
+         std::any_of(others_.begin(), others_.end(), [&](const Removed* r) { return r->comes_within(p, near_mm); });
 }
 
 }  // namespace toothpath::cut

@@ -16,9 +16,9 @@ namespace toothpath::cut {
 /// Least signed distance from a point to a body over all moments of a motion (straight in the tip, normalised linear in
 /// the axis), negative inside. The distance is convex along a motion whose axis stands and, up to the square of the
 /// turn, along one that turns; its least is found to 1e-9 mm from the middle and both ends. Where `enough` is not
-/// undercut anything above it may be returned.
+/// undercut anything above it may be returned, and as soon as `near` is undercut what was found.
 [[nodiscard]] double least_distance(const Vec3& point, const tool::RoundedFrustum& body, const path::ToolMotion& motion,
-                                    double enough);
+                                    double enough, double near = -INFINITY);
 
 class SweptTool {
  public:
@@ -28,9 +28,9 @@ class SweptTool {
 
   /// min over the path of the distance to the cutting part: > 0 material left at p, < 0 removed that deep. Values above
   /// `cap` are returned as `cap`. mm.
-  [[nodiscard]] double excess(const Vec3& p, double cap) const { return excess_after(motions_.size(), p, cap); }
-  /// The same after the first `count` motions.
-  [[nodiscard]] double excess_after(std::size_t count, const Vec3& p, double cap) const;
+  [[nodiscard]] double excess(const Vec3& p, double cap) const;
+  /// Is it less than `near_mm` after the first `count` motions? Any of them that comes so near answers.
+  [[nodiscard]] bool comes_within(std::size_t count, const Vec3& p, double near_mm) const;
 
  private:
   std::vector<path::ToolMotion> motions_;
@@ -50,6 +50,8 @@ class Removed {
   void also(const Removed* other) { others_.push_back(other); }
   /// As `SweptPath::excess`.
   [[nodiscard]] double excess(const Vec3& p, double cap) const;
+  /// Is it less than `near_mm`?
+  [[nodiscard]] bool comes_within(const Vec3& p, double near_mm) const;
 
  private:
   std::unique_ptr<SweptPath> balls_;  // one of the two

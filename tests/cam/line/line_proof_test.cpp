@@ -653,6 +653,12 @@ TEST(SweptTools, NothingThatIsLeastIsLeftOut) {
       const double found = swept.excess(p, cap);
       EXPECT_GE(found, least);
       EXPECT_LE(found, least + 1e-9) << k;
+      EXPECT_EQ(swept.comes_within(motions.size(), p, cap), found < cap) << k;
+      double early = INFINITY;
+      for (std::size_t n = 0; n < motions.size() / 2; ++n)
+        for (const auto& body : tool.cutting)
+          early = std::min(early, cut::least_distance(p, body, motions[n], INFINITY));
+      if (std::abs(early - cap) > 1e-9) { EXPECT_EQ(swept.comes_within(motions.size() / 2, p, cap), early < cap) << k; }
       near += least < cap;
     }
     EXPECT_GT(near, 100);
