@@ -68,6 +68,19 @@ class Rapid {
     for (const auto& f : frustums_) high = std::max(high, -tool::lowest_z(f, -tip, -axis));
     return high;
   }
+  /// How far the tool stays beyond planes that touch the cone h = 0 of a chart; of each body that beside its lower end
+  /// or beside the tip, whichever tells more. A body that is thin there is not taken as wide as it grows.
+  [[nodiscard]] double beyond_planes(const tooth_space::Chart& chart, const Vec3& tip, const Vec3& axis) const {
+    const auto beyond = [&](const tool::RoundedFrustum& f, const Vec3& beside) {
+      const Vec3 up = chart.up_at(azimuth(beside));
+      return tool::lowest_z(f, Vec3(0, 0, tip.dot(up)), Vec3(0, 0, axis.dot(up)));
+    };
+    double least = INFINITY;
+    for (const auto& f : frustums_)
+      least = std::min(least, std::max(beyond(f, tip), beyond(f, tip + f.core.from * axis)));
+    const Vec3 centre = tip + ball_radius_ * axis;
+    return ball_radius_ > 0 ? std::min(least, chart.up(centre) - ball_radius_) : least;
+  }
   /// Least and greatest distance of the tool from the gear axis.
   [[nodiscard]] std::pair<double, double> radii(const Vec3& tip, const Vec3& axis) const {
     double least = INFINITY, most = 0;
@@ -77,7 +90,7 @@ class Rapid {
       least = std::min(least, (a + t * d).norm() - s.radius);
       most = std::max({most, a.norm() + s.radius, b.norm() + s.radius});
     }
-    return {least, most};
+    return {std::max(least, beyond_planes({0, 1}, tip, axis)), most};
   }
 
   [[nodiscard]] double over_roof(const Vec3& tip, const Vec3& axis) const {
@@ -85,7 +98,8 @@ class Rapid {
     for (const auto& f : frustums_) least = std::min(least, o_.roof->over(f, tip, axis));
     // The lower half of a ball is told by none of them.
     const Vec3 centre = tip + ball_radius_ * axis;
-    return ball_radius_ > 0 ? std::min(least, o_.roof->over(std::array{centre}) - ball_radius_) : least;
+    if (ball_radius_ > 0) least = std::min(least, o_.roof->over(std::array{centre}) - ball_radius_);
+    return std::max(least, beyond_planes(o_.roof->chart(), tip, axis) - o_.roof->top());
   }
 
   bool clear(double t0, double t1, int depth, RapidProof& proof) {

@@ -3,6 +3,7 @@
 
 #include "cam/path/motion_blend.h"
 #include "cam/tool/body.h"
+#include "cam/tool/proof_tool.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
 namespace toothpath {
@@ -116,6 +117,55 @@ TEST(TurningRapid, NeverCallsATouchClear) {
   EXPECT_GE(clear, 40);
   EXPECT_GE(hit, 30);
   EXPECT_GE(near, 2);
+}
+
+/// A tapered mill that goes round a cylinder, its thin end next to it: neither is a touch called clear, nor a thin end
+/// taken as wide as the mill grows.
+TEST(TurningRapid, AThinEndIsNotTakenAsWideAsItGrows) {
+  constexpr proof::RapidObstacle kCylinder{80, 0, 25, -25};
+  tool::ProofTool tool;
+  tool.cutting = {{{1, 14, 0, 1.2, tool::Body::flute}, 1}};
+  tool.bodies = {{16, 40, 3, 3, tool::Body::shank}, {40, 80, 16, 16, tool::Body::holder}};
+  /// Nearest place to the z axis over the motion, sampled.
+  const auto least_radius = [&](const path::ToolMotion& m) {
+    double least = INFINITY;
+    for (int step = 0; step <= 20; ++step) {
+      const Vec3 tip = path::tip_at(m, step / 20.0), axis = path::axis_at(m, step / 20.0), u = axis.unitOrthogonal(),
+                 v = axis.cross(u);
+      const auto look = [&](const tool::Frustum& f, double round) {
+        for (int i = 0; i <= 8; ++i)
+          for (int j = 0; j < 16; ++j) {
+            const double h = f.from + (f.to - f.from) * i / 8,
+                         r = f.radius_from + (f.radius_to - f.radius_from) * i / 8;
+            const Vec3 p = tip + h * axis + r * (std::cos(j * kPi / 8) * u + std::sin(j * kPi / 8) * v);
+            least = std::min(least, radius(p) - round);
+          }
+      };
+      look(tool.cutting.front().core, tool.cutting.front().round);
+      for (const tool::Frustum& f : tool.bodies) look(f, 0);
+    }
+    return least;
+  };
+  test::Random random(7);
+  int clear = 0, hit = 0;
+  for (int k = 0; k < 300; ++k) {
+    const double r = random(79.6, 81), phi = random(-3.1, 3.1), lean = random(-0.4, 0.4), up = random(-0.3, 0.3),
+                 turn = random(0, 0.1);
+    path::ToolMotion m;
+    m.rapid = true;
+    m.tip_from = {r * std::cos(phi), r * std::sin(phi), random(-10, 10)};
+    m.axis_from = Vec3(std::cos(phi + lean), std::sin(phi + lean), up).normalized();
+    m.tip_to = turned(m.tip_from, turn);
+    m.axis_to = turned(m.axis_from, turn);
+    const bool proven = proof::prove_rapid(m, tool, kCylinder).clear;
+    const double least = least_radius(m);
+    if (proven) { EXPECT_GE(least, kCylinder.outer_radius_mm - 1e-6) << k; }
+    if (least > kCylinder.outer_radius_mm + 0.15) { EXPECT_TRUE(proven) << k << " " << least; }
+    clear += proven;
+    hit += least < kCylinder.outer_radius_mm;
+  }
+  EXPECT_GE(clear, 100);
+  EXPECT_GE(hit, 60);
 }
 
 /// No sampled place of a body lies lower than the bound, for teeth on a plane, a cylinder and cones that open either
