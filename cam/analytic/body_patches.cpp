@@ -197,21 +197,27 @@ BodyQuad BodyPatches::made(const Cell& cell, const std::array<Vec2, 4>& at) cons
 }
 
 /// The straight line between the ends of a stretch of the border, raised so that the stretch lies below it, and lowered
-/// where it is the lower side of a quad; a stretch that leaves its azimuths is held by a rectangle.
+/// where it is the lower side of a quad. Of a stretch that leaves its azimuths the line is moved to the farthest ones,
+/// or made a rectangle, whichever holds it more closely: where two points are one but for rounding it hardly leaves.
 BodyQuad BodyPatches::end_quad(const Cell& cell, const std::array<Vec2, 4>& at) const {
   const std::size_t n = cell.surface.outer ? 1 : 0;
   const double at_s = n == 1 ? ring_.s_to : ring_.s_from, sag = ring_.border_sag[n], tip = space_.tip(at_s);
   auto s = border_stretch(ring_.border[n], at[0].x(), at[1].x());
-  const bool turns_back =
-      s.least_azimuth < std::min(s.from.x(), s.to.x()) || s.most_azimuth > std::max(s.from.x(), s.to.x());
-  if (turns_back) {
-    const double high = std::max(s.from.y(), s.to.y()) + s.above, low = std::min(s.from.y(), s.to.y()) - s.below;
-    s.from = {s.least_azimuth, high};
-    s.to = {s.most_azimuth, high};
-    s.above = 0;
-    s.below = high - low;
-  }
   if (s.from.x() > s.to.x()) std::swap(s.from, s.to);
+  const double leaves = std::max(s.from.x() - s.least_azimuth, s.most_azimuth - s.to.x());
+  if (leaves > 0) {
+    const double high = std::max(s.from.y(), s.to.y()), low = std::min(s.from.y(), s.to.y()),
+                 tilts = (high - low) * leaves / (s.most_azimuth - s.least_azimuth);
+    s.from.x() = s.least_azimuth;
+    s.to.x() = s.most_azimuth;
+    if (2 * tilts < high - low) {
+      s.above += tilts;
+      s.below += tilts;
+    } else {
+      s.from.y() = s.to.y() = high;
+      s.below += high - low;
+    }
+  }
   const auto place = [&](const Vec2& top, double share, double shift) {
     return chart().place(at_s, top.x(), ring_.base_mm + share * (std::min(top.y() + shift, tip) - ring_.base_mm));
   };
@@ -238,11 +244,15 @@ Vec2 BodyPatches::bends(const Cell& cell, const BodyQuad& q) const {
   return {bend.sag(size.x(), 0), bend.sag(0, size.y())};
 }
 
-double BodyPatches::stays(std::size_t index, const BodyQuad& q) const {
-  const Cell& cell = cells_[index];
+double BodyPatches::stands_out(const Cell& cell, const BodyQuad& q) const {
   if (!cell.surface.end()) return 0;
   const double height = std::max((q.corner[3] - q.corner[0]).norm(), (q.corner[2] - q.corner[1]).norm());
   return std::max(0.0, height - sides(cell, q).y());
+}
+
+double BodyPatches::stays(std::size_t index, const BodyQuad& q) const {
+  const Cell& cell = cells_[index];
+  return std::min(stands_out(cell, q), 2 * ring_.border_sag[cell.surface.outer ? 1 : 0]);
 }
 
 double BodyPatches::size(std::size_t index, const BodyQuad& q) const { return sides(cells_[index], q).maxCoeff(); }
@@ -251,7 +261,7 @@ std::array<BodyQuad, 2> BodyPatches::halved(std::size_t index, const BodyQuad& q
   // A narrow quad whose bound is poor (close to a fold of the fillet) would stay as poor however short it is made.
   const Vec2 side = sides(cells_[index], q), bend = bends(cells_[index], q);
   const Vec2& shorten = bend.maxCoeff() > side.maxCoeff() ? bend : side;
-  const bool across = shorten.x() >= shorten.y();
+  const bool across = shorten.x() >= shorten.y() || stands_out(cells_[index], q) > std::max(side.y(), stays(index, q));
   const auto& x = q.at;
   std::array<std::array<Vec2, 4>, 2> at;
   std::array<std::array<int, 4>, 2> old;  // corners that stay, and -1

@@ -93,11 +93,12 @@ class BodyPatches {
     return blocks_[cells_[cell].block].frame.uv(at);
   }
 
-  /// Across its longer side; where the bend may leave more of the hull than that, across the parameter that bends more.
+  /// Across its longer side; where the bend may leave more of the hull than that, across the parameter that bends more;
+  /// along the border where that stands out more than the quad is high.
   [[nodiscard]] std::array<BodyQuad, 2> halved(std::size_t cell, const BodyQuad& quad) const;
-  /// Longest side that halving shortens, mm. A quad of an end is higher by what its border may stand out: `stays`.
+  /// Longest side that halving shortens, mm. A quad of an end is higher by what its border may stand out.
   [[nodiscard]] double size(std::size_t cell, const BodyQuad& quad) const;
-  /// The part of its height that no halving shortens, mm; 0 but for ends.
+  /// The part of its height that no halving shortens, mm: the sag between the points of the border; 0 but for ends.
   [[nodiscard]] double stays(std::size_t cell, const BodyQuad& quad) const;
   [[nodiscard]] BodyHull outline(std::size_t cell, const BodyQuad& quad) const;
   /// The most by which the hull can lie above the surface along a unit vector g, and in any direction. mm
@@ -125,6 +126,8 @@ class BodyPatches {
   };
   /// Lengths of the sides along both parameters, as `size` counts.
   [[nodiscard]] Vec2 sides(const Cell& cell, const BodyQuad& quad) const;
+  /// How much higher a quad of an end is than `sides` count, mm: halves of its stretch of the border stand out less.
+  [[nodiscard]] double stands_out(const Cell& cell, const BodyQuad& quad) const;
   /// What the bend along both parameters may leave of the hull of a quad's corners, as `sag` counts. mm
   [[nodiscard]] Vec2 bends(const Cell& cell, const BodyQuad& quad) const;
   [[nodiscard]] BodyQuad made(const Cell& cell, const std::array<Vec2, 4>& at) const;

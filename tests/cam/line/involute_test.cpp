@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "cam/analytic/body_sweep.h"
+#include "cam/analytic/gear_distance.h"
 #include "cam/line/plan.h"
 #include "geometry/base/angle.h"
 #include "geometry/cylindrical/part.h"
@@ -225,6 +227,41 @@ TEST(Involute, PassesByBruteForce) {
     EXPECT_NE(none.error().message.find("left = 0.020 um asks for "), std::string::npos) << none.error().message;
     EXPECT_NE(none.error().message.find("at most 24 are planned"), std::string::npos) << none.error().message;
   }
+}
+
+// A ball that just does not touch a flank at the very end of its ring: that end is bounded as closely as the flank, at
+// every helix angle. On some, two points of the end's border are one but for rounding.
+TEST(Involute, EndsAreBoundAsCloselyAsFlanks) {
+  constexpr double kGap = 4e-4, kRadius = 0.3, kProof = 1e-4;
+  double worst = 0;
+  for (const int teeth : {24, 30})
+    for (const double helix : {0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0}) {
+      auto gear = double_helical_pinion();
+      gear.teeth = teeth;
+      gear.tip_diameter_mm = gear.groove_diameter_mm = std::nullopt;
+      gear.zones = {{radians(helix), 3.3, 4.3}};
+      const auto part = part_of(gear);
+      const analytic::GearDistance distance(part, 1);
+      for (const int side : {1, -1}) {
+        const auto f = *line::flank_task(*part, 0, side);
+        for (const double s : {f.s_from, f.s_to})
+          for (int k = 0; k <= 100; ++k) {
+            const auto on = f.at_depth(s, f.depth * k / 100)->on;
+            path::ToolMotion stands;
+            stands.tip_from = stands.tip_to = on.p + (kRadius + kGap) * on.n;
+            stands.axis_from = stands.axis_to = f.up(on.p);
+            analytic::SweptGapOptions o;
+            o.touching = true;
+            o.enough_mm = o.contact_mm = 0.01;
+            o.contact_proof_mm = kProof;
+            const auto gap = analytic::swept_gap(
+                distance, tool::RoundedFrustum{{0, 1e-3, 0, 0, tool::Body::ball}, kRadius}, stands, o);
+            worst = std::max(worst, std::min(kGap, gap.measured_mm) - gap.proven_mm);
+          }
+      }
+    }
+  std::printf("proven %.2f um below what is there\n", 1e3 * worst);
+  EXPECT_LE(worst, kProof);
 }
 
 }  // namespace
