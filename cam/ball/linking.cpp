@@ -5,6 +5,8 @@
 #include <cmath>
 #include <optional>
 
+#include "cam/path/motion_blend.h"
+
 namespace toothpath::ball {
 namespace {
 
@@ -83,9 +85,7 @@ class Linker {
   void around(const Vec3& to, const Vec3& axis) {
     if (o_.clearance.flat()) return;
     const Vec3 from = above(last_, last_axis_);
-    const double turn = std::abs(angle_from_to(from, to)), r = std::max(radius(from), radius(to));
-    const double most = std::sqrt(8 * o_.most_dip_mm / r);
-    const int steps = int(std::ceil(turn / most));
+    const int steps = path::pieces_about_axis(from, to, o_.most_dip_mm);
     for (int k = 1; k < steps; ++k) {
       const double t = double(k) / steps;
       const Vec3 way = from + t * (to - from), a = blended(axis, t);

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "cam/line/misfit.h"
+#include "cam/path/motion_blend.h"
 #include "cam/tool/body.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr int kMostLeaning = 4;    // strips that are tried of flanks that are no upright ones
 constexpr int kMoreStrips = 2;     // than the bend asks for: poses stand, and the profile bends unevenly
+constexpr double kDip = 0.5;       // share of the clearance of rapids
 constexpr double kBodySag = 0.01;  // mm: how far bodies may stand out of the tool where only rapids ask for them
 
 Result<std::vector<FlankTask>> flanks_of(const tooth_space::ToothedPart& part, double allowance_mm) {
@@ -127,16 +129,18 @@ std::string missed(const LineOperation& o, const std::vector<Choice>& tried, con
 /// Appends passes to a path: in and out along the tool axis, which only ever frees a tool that widens upwards.
 class PathWriter {
  public:
-  PathWriter(const tool::Profile& tool, const LineOperation& o, path::ClPath& path)
-      : o_(o), path_(path), r_0_(tool.law()->r_0), bodies_(tool.proof_bodies(kBodySag)) {}
+  /// @param dip_mm  by which straight rapids may lie below the clearance height between their ends
+  PathWriter(const tool::Profile& tool, const LineOperation& o, double dip_mm, path::ClPath& path)
+      : o_(o), path_(path), r_0_(tool.law()->r_0), dip_mm_(dip_mm), bodies_(tool.proof_bodies(kBodySag)) {}
 
   void add(const FlankTask& flank, const LinePass& pass, int number) {
     std::vector<LineRecord> records = pass.records;
     if (climbs(records, flank) != o_.climb) std::reverse(records.begin(), records.end());
     zone_ = flank.zone;
     pass_ = number;
-    record(above(records.front().axis, flank), records.front().axis.a, path::MoveKind::rapid, 0);
     const AxisLine<double>& first = records.front().axis;
+    if (!path_.records.empty() && flank.chart().sine != 0) around(above(first, flank), first.a, flank);
+    record(above(first, flank), first.a, path::MoveKind::rapid, 0);
     if ((above(first, flank) - tip(first)).norm() > o_.slow_mm)
       record(tip(first) + o_.slow_mm * first.a, first.a, path::MoveKind::engage, link_feed());
     record(tip(first), first.a, path::MoveKind::engage, o_.feed_mm_min);
@@ -163,6 +167,16 @@ class PathWriter {
     for (const auto& f : bodies_.frustums) lowest = std::min(lowest, tool::lowest_z(f, at, leans));
     return tip(axis) + std::max(0.0, (o_.clearance_height_mm - lowest) / leans.z()) * axis.a;
   }
+  /// Rapids towards a place above the clearance height, where that is round.
+  void around(const Vec3& to, const Vec3& axis, const FlankTask& flank) {
+    const path::ClRecord from = path_.records.back();
+    const int pieces = path::pieces_about_axis(from.tip, to, dip_mm_);
+    for (int k = 1; k < pieces; ++k) {
+      const double t = double(k) / pieces;
+      const Vec3 a = ((1 - t) * from.axis + t * axis).normalized();
+      record(above({from.tip + t * (to - from.tip) + r_0_ * a, a}, flank), a, path::MoveKind::rapid, 0);
+    }
+  }
   /// Is the material to the right of the feed, seen from the holder?
   [[nodiscard]] bool climbs(const std::vector<LineRecord>& records, const FlankTask& flank) const {
     const std::size_t k = records.size() / 2;
@@ -176,7 +190,7 @@ class PathWriter {
 
   const LineOperation& o_;
   path::ClPath& path_;
-  double r_0_, least_feed_ = INFINITY;
+  double r_0_, dip_mm_, least_feed_ = INFINITY;
   tool::ProofBodies bodies_;
   int zone_ = 0, pass_ = 0;
 };
@@ -284,7 +298,7 @@ Result<LinePlan> plan_line_milling(const tooth_space::ToothedPart& part, const t
   plan.path.operation_type = "line_milling";
   plan.path.tool = o.tool;
   plan.path.spindle_rpm = o.speed_rpm;
-  PathWriter writer(tool, o, plan.path);
+  PathWriter writer(tool, o, kDip * (o.clearance_height_mm - part.blank_top()), plan.path);
   const auto strips = std::size_t(plan.strips);
   for (const std::size_t flank : shortest_order(flanks, plan.passes, strips))
     for (std::size_t k = flank * strips; k < (flank + 1) * strips; ++k)

@@ -8,6 +8,9 @@
 #include "cam/analytic/body_sweep.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/line/plan.h"
+#include "cam/path/motions.h"
+#include "cam/proof/rapid_clearance.h"
+#include "cam/tool/proof_tool.h"
 #include "geometry/base/angle.h"
 #include "geometry/cylindrical/part.h"
 #include "tests/cam/line/line_cases.h"
@@ -262,6 +265,37 @@ TEST(Involute, EndsAreBoundAsCloselyAsFlanks) {
     }
   std::printf("proven %.2f um below what is there\n", 1e3 * worst);
   EXPECT_LE(worst, kProof);
+}
+
+// From flank to flank over a gear that is long and thin: a straight way between two places above its blank would pass
+// through it.
+TEST(Involute, RapidsGoRoundTheBlank) {
+  auto gear = shifted_spur();
+  gear.module_mm = 1;
+  gear.bore_diameter_mm = 0;
+  gear.zones = {{radians(-25), -15, 15}};
+  const auto part = part_of(gear);
+  line::LineOperation o;
+  o.speed_rpm = 16000;
+  o.feed_mm_min = 400;
+  o.strips = 2;
+  o.rotaries = {line::Rotaries::both};
+  o.clearance_height_mm = part->blank_top() + 1;
+  o.chord_tolerance_mm = 5e-3;
+  const auto tool = std::get<tool::Profile>(tool::Profile::make(tapered_mill(0.3, 5, 4, 3, 20)));
+  const auto plan = line::plan_line_milling(*part, tool, o);
+  ASSERT_TRUE(plan) << plan.error().message;
+  const proof::RapidObstacle blank{part->blank_top(), 0, 15, -15};
+  double turn = 0;
+  int rapids = 0;
+  for (path::ToolMotion m : path::motions_of(plan->path)) {
+    if (!m.rapid) continue;
+    ++rapids;
+    turn = std::max(turn, std::abs(angle_from_to(m.tip_from, m.tip_to)));
+    EXPECT_TRUE(proof::prove_rapid(m, tool::proof_tool(tool, 1), blank).clear) << "record " << m.line;
+  }
+  std::printf("%d rapids, they turn by %.2f rad at most\n", rapids, turn);
+  EXPECT_GT(rapids, 4);
 }
 
 }  // namespace
