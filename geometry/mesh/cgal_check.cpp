@@ -94,8 +94,8 @@ bool more_at_a_corner(std::size_t most, std::size_t points, const Soup& soup) {
   return false;
 }
 
-/// Do two facets of a manifold mesh cross? CGAL looks through every facet of the mesh that it is asked of, so it gets one
-/// of these two alone, joined as they are.
+/// Do two facets of a manifold mesh cross? CGAL looks through every facet of the mesh that it is asked of, so it gets
+/// one of these two alone, joined as they are.
 bool cross(const std::vector<Vec3>& points, const Soup::value_type& a, const Soup::value_type& b) {
   SurfaceMesh two;
   std::array<SurfaceMesh::Vertex_index, 3> of_a, of_b;

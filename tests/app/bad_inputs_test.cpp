@@ -17,7 +17,7 @@ constexpr int kItems = 99;
 const std::string kItemsFile = TOOTHPATH_SOURCE_DIR "/tests/bad_inputs/items.toml";
 const std::string kPage = TOOTHPATH_SOURCE_DIR "/docs/bad_inputs.md";
 
-struct Case {
+struct InputCase {
   std::string of = "spur_quick.toml", make, name, text;
   std::vector<std::string> change, machine, says, unset, run = {"run", "{file}", "--out", "{out}"};
   bool has_text = false;
@@ -28,7 +28,7 @@ struct Item {
   int number = 0;
   std::string input, open;
   std::vector<std::string> jobs, machines, tests;
-  std::vector<Case> cases;
+  std::vector<InputCase> cases;
 };
 
 std::string text_of(const toml::TomlTable& table, const char* key) {
@@ -48,11 +48,11 @@ int number_of(const toml::TomlTable& table, const char* key) {
   return entry && entry->value.number() ? int(*entry->value.number()) : -1;
 }
 
-Case case_of(const toml::TomlTable& table) {
+InputCase case_of(const toml::TomlTable& table) {
   static const std::set<std::string> known = {"of",      "make", "name",  "text", "change",
                                               "machine", "says", "unset", "run",  "exit"};
   for (const auto& entry : table.entries) EXPECT_EQ(known.count(entry.key), 1u) << entry.key;
-  Case c;
+  InputCase c;
   if (table.find("of")) c.of = text_of(table, "of");
   c.make = text_of(table, "make");
   c.name = text_of(table, "name");
@@ -121,7 +121,7 @@ std::string filled(std::string text, const std::string& name, const std::string&
 }
 
 /// The file of a case, and its name.
-std::string file_for(const Case& c, const TestDir& dir) {
+std::string file_for(const InputCase& c, const TestDir& dir) {
   const std::string file = dir / (c.name.empty() ? c.machine.empty() ? "job.toml" : "machine.toml" : bytes_of(c.name));
   if (c.make == "missing") return file;
   if (c.make == "directory") std::filesystem::create_directory(file);
@@ -161,7 +161,7 @@ bool has_control_characters(const std::string& text) {
                      [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\n') || c == 0x7f; });
 }
 
-void run_case(const Case& c) {
+void run_case(const InputCase& c) {
   const TestDir dir;
   const std::string file = file_for(c, dir);
   std::vector<std::string> words;
@@ -189,7 +189,7 @@ TEST_P(BadInput, IsHeld) {
     EXPECT_TRUE(std::any_of(std::begin(kBadMachineFiles), std::end(kBadMachineFiles), [&](const BadFile& bad) {
       return machine == bad.what;
     })) << machine;
-  for (const Case& c : item.cases) run_case(c);
+  for (const InputCase& c : item.cases) run_case(c);
 }
 
 INSTANTIATE_TEST_SUITE_P(Items, BadInput, ::testing::ValuesIn(items()),
@@ -225,13 +225,13 @@ std::string machine_message(const std::string& name) {
   return name;
 }
 
-std::string input_of(const Case& c) {
+std::string input_of(const InputCase& c) {
   if (!c.make.empty()) return c.make + (c.name.empty() ? "" : ", `" + cell(c.name) + "`");
   if (c.has_text) return c.text.empty() ? "no byte" : "`" + cell(c.text) + "`";
   return "`" + cell(c.machine.empty() ? c.change.at(1) : c.machine.at(1)) + "`";
 }
 
-std::string case_text(const Case& c) {
+std::string case_text(const InputCase& c) {
   std::string text = input_of(c) + ": " + std::to_string(c.exit);
   for (std::string said : c.says) {
     if (const auto error = said.find("error: "); said.starts_with("{file}") && error != std::string::npos)
@@ -253,7 +253,7 @@ std::string page() {
     std::vector<std::string> said;
     for (const std::string& job : item.jobs) said.push_back("`" + cell(first_message(job)) + "`");
     for (const std::string& machine : item.machines) said.push_back("`" + cell(machine_message(machine)) + "`");
-    for (const Case& c : item.cases) said.push_back(case_text(c));
+    for (const InputCase& c : item.cases) said.push_back(case_text(c));
     std::string held;
     if (!item.jobs.empty()) held = "`BadJob.IsRefusedWithItsFirstLine`";
     if (!item.machines.empty())

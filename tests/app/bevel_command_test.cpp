@@ -8,7 +8,7 @@
 namespace toothpath::test {
 namespace {
 
-const std::string kTrunnion = kSamples + "/bevel_trunnion.toml";
+const std::string kBevelTrunnion = kSamples + "/bevel_trunnion.toml";
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
@@ -39,7 +39,7 @@ class BevelCommand : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     dir_ = new TestDir;
-    run_ = new Finished(run_program({"run", kTrunnion, "--out", *dir_ / "run"}));
+    run_ = new Finished(run_program({"run", kBevelTrunnion, "--out", *dir_ / "run"}));
     report_ = new nlohmann::json(nlohmann::json::parse(file_text(*dir_ / "run/report.json"), nullptr, false));
   }
   static void TearDownTestSuite() {
@@ -49,7 +49,7 @@ class BevelCommand : public ::testing::Test {
   }
   static nlohmann::json check(const std::string& name, const std::vector<std::string>& program, int exit_code) {
     write_file(*dir_ / (name + ".ngc"), text_of(program));
-    const Finished done = run_program({"check", kTrunnion, *dir_ / (name + ".ngc"), "--out", *dir_ / name});
+    const Finished done = run_program({"check", kBevelTrunnion, *dir_ / (name + ".ngc"), "--out", *dir_ / name});
     EXPECT_EQ(done.exit_code, exit_code) << done.out << done.err;
     return nlohmann::json::parse(file_text(*dir_ / (name + "/report.json")), nullptr, false);
   }
@@ -109,9 +109,10 @@ TEST_F(BevelCommand, WhatOnlyAFaceGearCanDoIsRefused) {
                     out = *dir_ / "refused";
   const std::string at = ": error: type = \"equal_base_circle_bevel_gear\"";
   const std::pair<std::vector<std::string>, std::string> asked[] = {
-      {{"correct", kTrunnion, "--measured", measured}, " answers no measurement: its flanks are what one mill"},
-      {{"check", kTrunnion, program, "--measured", measured}, " answers no measurement: its flanks are what one mill"},
-      {{"contact", kTrunnion, "--pinion-teeth", "20"}, ", but --pinion-teeth needs a face_gear"}};
+      {{"correct", kBevelTrunnion, "--measured", measured}, " answers no measurement: its flanks are what one mill"},
+      {{"check", kBevelTrunnion, program, "--measured", measured},
+       " answers no measurement: its flanks are what one mill"},
+      {{"contact", kBevelTrunnion, "--pinion-teeth", "20"}, ", but --pinion-teeth needs a face_gear"}};
   for (auto [words, said] : asked) {
     words.insert(words.end(), {"--out", out});
     const Finished done = run_program(words);
@@ -119,7 +120,7 @@ TEST_F(BevelCommand, WhatOnlyAFaceGearCanDoIsRefused) {
     EXPECT_NE(done.err.find(at + said), std::string::npos) << done.err;
   }
   EXPECT_FALSE(std::filesystem::exists(out));
-  const Finished mate = run_program({"contact", kSamples + "/spur_quick.toml", "--mate", kTrunnion, "--out", out});
+  const Finished mate = run_program({"contact", kSamples + "/spur_quick.toml", "--mate", kBevelTrunnion, "--out", out});
   EXPECT_EQ(mate.exit_code, 3);
   EXPECT_NE(mate.err.find("type = \"face_gear\", but --mate needs an equal_base_circle_bevel_gear"), std::string::npos)
       << mate.err;
@@ -223,7 +224,7 @@ TEST_F(BevelCommand, MovesBesideTheTeethAreProven) {
   lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(retracts[3]) + 1, "(OP 7 finger_finishing)");
   lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(retracts[3]) + 2, clean[retracts[3]]);
   write_file(*dir_ / "op.ngc", text_of(lines));
-  const Finished unknown = run_program({"check", kTrunnion, *dir_ / "op.ngc", "--out", *dir_ / "op"});
+  const Finished unknown = run_program({"check", kBevelTrunnion, *dir_ / "op.ngc", "--out", *dir_ / "op"});
   EXPECT_EQ(unknown.exit_code, 3);
   EXPECT_NE(unknown.err.find("operation 7: the job has the operations 0 to 1"), std::string::npos) << unknown.err;
 }
@@ -238,7 +239,7 @@ TEST_F(BevelCommand, OneAndTwoThreadsSayTheSame) {
     return report;
   };
   write_file(*dir_ / "off.toml", off_the_axis());
-  for (const std::string& job : {kTrunnion, *dir_ / "off.toml"}) {
+  for (const std::string& job : {kBevelTrunnion, *dir_ / "off.toml"}) {
     EXPECT_EQ(report_on(job, "one", "1"), report_on(job, "two", "2")) << job;
     for (const char* file : {"program.ngc", "tooth.vtp", "setup.html"})
       EXPECT_EQ(file_text(*dir_ / (std::string("one/") + file)), file_text(*dir_ / (std::string("two/") + file)))
@@ -294,7 +295,7 @@ TEST_F(BevelCommand, TeethWrittenOutAreCompared) {
 // control.
 TEST(BevelMate, RunsOnTheT600SAndIsCheckedThere) {
   const TestDir dir;
-  std::string job = file_text(kTrunnion);
+  std::string job = file_text(kBevelTrunnion);
   job = replaced(job, "teeth = 18\nmate_teeth = 27", "teeth = 27\nmate_teeth = 18");
   job = replaced(job, "hand = \"right\"", "hand = \"left\"");
   job = replaced(job, "tip_radius = 0.12 ", "tip_radius = 0.07 ");

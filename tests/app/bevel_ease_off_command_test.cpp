@@ -2,14 +2,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/app/program.h"
+#include "tests/app/report.h"
 
 namespace toothpath::test {
 namespace {
 
 using Json = nlohmann::json;
 
-const std::string kWheel = kSamples + "/bevel_wheel.toml";
+const std::string kBevelWheel = kSamples + "/bevel_wheel.toml";
 
 /// A sample of one hand, which rolls in half the time.
 std::string of_one_hand(std::string text) {
@@ -19,7 +19,8 @@ std::string of_one_hand(std::string text) {
 }
 
 /// The pinion sample with this as its [contact]; of one hand, or as it is.
-std::string job_with(const TestDir& dir, const std::string& name, const std::string& contact, bool single = true) {
+std::string bevel_job_with(const TestDir& dir, const std::string& name, const std::string& contact,
+                           bool single = true) {
   std::string text = file_text(kSamples + "/bevel_pinion.toml");
   if (single) text = of_one_hand(text);
   const auto at = text.find("\n[machine]");
@@ -31,26 +32,19 @@ std::string job_with(const TestDir& dir, const std::string& name, const std::str
 /// The wheel of one hand.
 std::string mate_of(const TestDir& dir) {
   const std::string path = dir / "wheel.toml";
-  write_file(path, of_one_hand(file_text(kWheel)));
+  write_file(path, of_one_hand(file_text(kBevelWheel)));
   return path;
-}
-
-Json report_of(std::vector<std::string> arguments, int exit_code = 0) {
-  arguments.push_back("--json");
-  const auto done = run_program(arguments);
-  EXPECT_EQ(done.exit_code, exit_code) << done.err << done.out.substr(0, 2000);
-  return Json::parse(done.out).at("report");
 }
 
 /// A row a quantity and way, as the pair that stands there by keys is; maps, motion curves and drawings beside them.
 TEST(BevelMisalignmentTable, RowsAreThePairThatStandsThere) {
   const TestDir dir;
   const Json report = report_of({"contact",
-                                 job_with(dir, "box.toml",
-                                          "[contact.misalignment]\noffset = 0.02\nangle = 0.03\npinion_axial = "
-                                          "0.01\ngear_axial = 0.02\n",
-                                          false),
-                                 "--mate", kWheel, "--out", dir / "box"});
+                                 bevel_job_with(dir, "box.toml",
+                                                "[contact.misalignment]\noffset = 0.02\nangle = 0.03\npinion_axial = "
+                                                "0.01\ngear_axial = 0.02\n",
+                                                false),
+                                 "--mate", kBevelWheel, "--out", dir / "box"});
   const Json& rows = report.at("misalignments").at("rows");
   ASSERT_EQ(rows.size(), 9u);
   EXPECT_EQ(rows[0].at("name"), "as it stands");
@@ -62,8 +56,8 @@ TEST(BevelMisalignmentTable, RowsAreThePairThatStandsThere) {
                                                       {8, "gear_axial_error = 0.02\n"}};
   for (const auto& [row, key] : keys) {
     SCOPED_TRACE(key);
-    const Json alone =
-        report_of({"contact", job_with(dir, "alone.toml", key, false), "--mate", kWheel, "--out", dir / "alone"});
+    const Json alone = report_of(
+        {"contact", bevel_job_with(dir, "alone.toml", key, false), "--mate", kBevelWheel, "--out", dir / "alone"});
     for (const std::size_t s : {0u, 1u}) {
       const Json &flank = rows[row].at("flanks")[s], &same = alone.at("walls")[s];
       EXPECT_EQ(flank.at("wall"), same.at("wall"));
@@ -91,7 +85,7 @@ TEST(BevelMisalignmentTable, RowsAreThePairThatStandsThere) {
 /// What is found keeps the pattern of both walls inside; the job that is written gives the same numbers.
 TEST(BevelContactOptimise, WritesAJobThatDoesWhatWasPromised) {
   const TestDir dir;
-  const std::string job = job_with(dir, "plain.toml", "[contact.misalignment]\noffset = 0.01\n"),
+  const std::string job = bevel_job_with(dir, "plain.toml", "[contact.misalignment]\noffset = 0.01\n"),
                     found_job = dir / "found.toml";
   const Json report =
       report_of({"contact", job, "--mate", mate_of(dir), "--optimise", "--write", found_job, "--out", dir / "out"});
@@ -126,7 +120,7 @@ TEST(BevelContactOptimise, WritesAJobThatDoesWhatWasPromised) {
 /// Where there is none it says so, with what is in the way, and writes no job.
 TEST(BevelContactOptimise, SaysWhenThereIsNone) {
   const TestDir dir;
-  const std::string job = job_with(dir, "plain.toml", "[contact.misalignment]\nmargin = 0.4\noffset = 0.01\n");
+  const std::string job = bevel_job_with(dir, "plain.toml", "[contact.misalignment]\nmargin = 0.4\noffset = 0.01\n");
   const auto run = run_program(
       {"contact", job, "--mate", mate_of(dir), "--optimise", "--out", dir / "out", "--write", dir / "found.toml"});
   EXPECT_EQ(run.exit_code, 1) << run.err;
@@ -138,8 +132,8 @@ TEST(BevelContactOptimise, SaysWhenThereIsNone) {
 
 TEST(BevelContactOptimise, Refusals) {
   const TestDir dir;
-  const std::string boxed = job_with(dir, "boxed.toml", "[contact.misalignment]\noffset = 0.01\n"),
-                    bare = job_with(dir, "bare.toml", "");
+  const std::string boxed = bevel_job_with(dir, "boxed.toml", "[contact.misalignment]\noffset = 0.01\n"),
+                    bare = bevel_job_with(dir, "bare.toml", "");
   const auto refused = [&](const std::string& words, std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "contact");
     arguments.insert(arguments.end(), {"--mate", mate_of(dir), "--out", dir / "out"});

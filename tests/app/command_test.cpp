@@ -18,7 +18,6 @@
 namespace toothpath::test {
 namespace {
 
-const std::string kQuick = kSamples + "/spur_quick.toml";
 const std::vector<std::string> kSurfaceFiles = {"gear.stl",    "inspection.csv", "inspection.dmi", "limits.html",
                                                 "limits.json", "limits.svg",     "report.json",    "tooth.vtp"};
 

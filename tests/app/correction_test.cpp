@@ -53,12 +53,12 @@ double process_error(int side, double x, double y) {
                   : -0.020 * (0.3 * u - 0.4 * v * v * u + 0.3 * v);
 }
 
-struct Case {
+struct CorrectionCase {
   job::Job job;
   std::optional<face_gear::FaceGear> gear;
 };
-Case read_case(const std::string& file) {
-  Case c;
+CorrectionCase read_case(const std::string& file) {
+  CorrectionCase c;
   auto job = job::read_job_file(file);
   EXPECT_TRUE(job.has_value());
   c.job = job.value();
@@ -184,7 +184,7 @@ TEST(Correction, TwentyMicrometresOfACylindricalGearAreGoneAfterOneLoop) {
 TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
   const TestDir dir;
   write_file(dir / "job.toml", quick_job());
-  const Case c = read_case(dir / "job.toml");
+  const CorrectionCase c = read_case(dir / "job.toml");
   const auto grid = grid_of(*c.gear, 5, 9);
   const std::string good = measured_csv(
       grid, [](const inspection::InspectionPoint& p) { return process_error(p.side, p.row / 4.0, p.column / 8.0); });
@@ -327,7 +327,7 @@ feed = 400.0
 scallop = 0.02
 chord_tolerance = 0.002
 )");
-  const Case c = read_case(dir / "job.toml");
+  const CorrectionCase c = read_case(dir / "job.toml");
   write_file(dir / "bent.csv", measured_csv(grid_of(*c.gear, 5, 9), [](const inspection::InspectionPoint& p) {
                return 0.1 * std::pow(p.row / 2.0 - 1, 2);  // 100 um of crowning along the profile
              }));
@@ -374,7 +374,7 @@ std::string plain_of(const std::vector<SeenPoint>& points, bool normals) {
 TEST(Correction, PointsOfManyTeethGiveTheSameTargetAsTheGrid) {
   const TestDir dir;
   write_file(dir / "job.toml", quick_job());
-  const Case c = read_case(dir / "job.toml");
+  const CorrectionCase c = read_case(dir / "job.toml");
   const auto grid = grid_of(*c.gear, 5, 9);
   write_file(dir / "grid.csv", measured_csv(grid, [](const inspection::InspectionPoint& p) {
                return 0.2 * process_error(p.side, p.row / 4.0, p.column / 8.0);
@@ -425,7 +425,7 @@ TEST(Correction, PointsOfManyTeethGiveTheSameTargetAsTheGrid) {
 TEST(Correction, ARunAnswersPointsAndTellsPitchAndRunOut) {
   const TestDir dir;
   write_file(dir / "job.toml", file_text(kSamples + "/spur_quick.toml"));
-  const Case c = read_case(dir / "job.toml");
+  const CorrectionCase c = read_case(dir / "job.toml");
   const auto grid = grid_of(*c.gear, 5, 9);
   write_file(dir / "r.dmo", dmis_of(measured_teeth(*c.gear, grid, 60, 0)));
   const auto run =

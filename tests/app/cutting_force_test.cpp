@@ -10,12 +10,10 @@
 #include "app/report/page/page_of_run.h"
 #include "app/report/sections/sections.h"
 #include "app/report/svg/html_text.h"
-#include "tests/support/files.h"
+#include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {
-
-const std::string kSamples = TOOTHPATH_SOURCE_DIR "/samples/";
 
 job::Job job_of(const std::string& text) {
   auto read = job::parse_job(text, "job.toml");
@@ -49,7 +47,7 @@ const report::CuttingLoad& cutting(const report::RunReport& report, std::size_t 
 
 // dhfg_ball: slots for roughing, allowances and cusps for what comes after, and the mill of the old sample.
 TEST(CuttingForce, OfTheOldSample) {
-  const job::Job job = job_of(file_text(kSamples + "dhfg_ball.toml"));
+  const job::Job job = job_of(file_text(kSamples + "/dhfg_ball.toml"));
   const report::RunReport report = noted(job);
   ASSERT_EQ(report.operations.size(), 4u);
   for (std::size_t k = 0; k < 4; ++k) {
@@ -79,7 +77,7 @@ TEST(CuttingForce, OfTheOldSample) {
 
 // A stout mill in the same place is no warning.
 TEST(CuttingForce, AStoutToolIsNotSlender) {
-  std::string text = file_text(kSamples + "spur_quick.toml");
+  std::string text = file_text(kSamples + "/spur_quick.toml");
   text = with(text, "shank_diameter = 0.95", "shank_diameter = 6.0");
   text = with(text, "flute_length = 6.0", "flute_length = 1.0");
   text = with(text, "stick_out = 16.0", "stick_out = 4.0");
@@ -90,7 +88,7 @@ TEST(CuttingForce, AStoutToolIsNotSlender) {
 }
 
 TEST(CuttingForce, MaterialOfTheJob) {
-  const std::string text = file_text(kSamples + "spur_quick.toml");
+  const std::string text = file_text(kSamples + "/spur_quick.toml");
   const job::Job plain = job_of(text);
   EXPECT_FALSE(plain.material.stated);
   EXPECT_EQ(plain.operations[0].chip_load_mm, 0);
@@ -110,7 +108,7 @@ TEST(CuttingForce, MaterialOfTheJob) {
 }
 
 TEST(CuttingForce, ChipAndEngagementAskedFor) {
-  const std::string text = file_text(kSamples + "spur_quick.toml");
+  const std::string text = file_text(kSamples + "/spur_quick.toml");
   const std::size_t without = noted(job_of(text)).warnings.size();
   const auto asked = [&](const std::string& keys) {
     return job_of(with(text, "step_down = 0.8", "step_down = 0.8\n" + keys));
@@ -130,7 +128,7 @@ TEST(CuttingForce, ChipAndEngagementAskedFor) {
 
 // What is not known is said, not made up: a finishing pass without an operation before it, walls of finger mills.
 TEST(CuttingForce, WhatIsNotComputed) {
-  std::string text = file_text(kSamples + "spur_quick.toml");
+  std::string text = file_text(kSamples + "/spur_quick.toml");
   const auto from = text.find("[[operation]]"), to = text.find("[[operation]]", from + 1);
   const report::RunReport alone = noted(job_of(text.erase(from, to - from)));
   EXPECT_FALSE(cutting(alone, 0).load);
@@ -138,7 +136,7 @@ TEST(CuttingForce, WhatIsNotComputed) {
   EXPECT_NE(cutting(alone, 0).not_computed.find("no operation before it"), std::string::npos);
   EXPECT_EQ(alone.ledger.size(), 1u);
   EXPECT_TRUE(alone.warnings.empty());
-  const report::RunReport bevel = noted(job_of(file_text(kSamples + "bevel_wheel.toml")));
+  const report::RunReport bevel = noted(job_of(file_text(kSamples + "/bevel_wheel.toml")));
   EXPECT_TRUE(cutting(bevel, 0).load);
   EXPECT_FALSE(cutting(bevel, 1).load);
   EXPECT_TRUE(cutting(bevel, 1).compliance);
@@ -146,7 +144,7 @@ TEST(CuttingForce, WhatIsNotComputed) {
 }
 
 TEST(CuttingForce, StandsInReportAndOnThePage) {
-  const job::Job job = job_of(file_text(kSamples + "spur_quick.toml"));
+  const job::Job job = job_of(file_text(kSamples + "/spur_quick.toml"));
   report::RunReport report = noted(job);
   report.operations[1].cutting->load.reset();
   report.operations[1].cutting->not_computed = "planted";

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/app/program.h"
+#include "tests/app/report.h"
 
 namespace toothpath::test {
 namespace {
@@ -16,13 +16,6 @@ std::string plain_job(const TestDir& dir, const std::string& name, const std::st
   const std::string path = dir / name;
   write_file(path, text.substr(0, at) + "[contact]\npinion_teeth = 20\n" + contact + "\n" + text.substr(at));
   return path;
-}
-
-Json report_of(std::vector<std::string> arguments, int exit_code = 0) {
-  arguments.push_back("--json");
-  const auto done = run_program(arguments);
-  EXPECT_EQ(done.exit_code, exit_code) << done.err << done.out.substr(0, 2000);
-  return Json::parse(done.out).at("report");
 }
 
 constexpr const char* kCrowned = R"(

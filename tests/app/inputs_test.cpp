@@ -12,8 +12,6 @@
 namespace toothpath::test {
 namespace {
 
-const std::string kMachines = TOOTHPATH_SOURCE_DIR "/machines/data";
-
 /// Opened inputs, and names that came to the output directory or left it. Hidden files do not count.
 class Watch {
  public:

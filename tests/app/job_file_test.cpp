@@ -8,12 +8,10 @@
 #include <random>
 
 #include "geometry/base/angle.h"
-#include "tests/support/files.h"
+#include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {
-
-const std::string kSamples = TOOTHPATH_SOURCE_DIR "/samples";
 
 job::Job read(const std::string& name) {
   auto result = job::read_job_file(kSamples + "/" + name);

@@ -7,32 +7,21 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/app/program.h"
+#include "tests/app/report.h"
 
 namespace toothpath::test {
 namespace {
 
 using Words = std::vector<std::string>;
 
-nlohmann::json report_of(Words words, int exit_code = 0) {
-  words.emplace_back("--json");
-  const Finished done = run_program(words);
-  EXPECT_EQ(done.exit_code, exit_code) << words.front() << ": " << done.err;
-  const auto json = nlohmann::json::parse(done.out, nullptr, false);
-  EXPECT_FALSE(json.is_discarded()) << done.out.substr(0, 300);
-  EXPECT_EQ(json["exit_code"], exit_code);
-  EXPECT_TRUE(json.contains("report")) << words.front() << " has no data";
-  return json.value("report", nlohmann::json::object());
-}
-
 struct Asked {
   Words words;    ///< OUT: a folder
   Words pointer;  ///< what the data must have, as JSON pointers, not empty there
 };
 
-class Json : public ::testing::TestWithParam<Asked> {};
+class CommandJson : public ::testing::TestWithParam<Asked> {};
 
-TEST_P(Json, CarriesTheDataOfTheCommand) {
+TEST_P(CommandJson, CarriesTheDataOfTheCommand) {
   const TestDir dir;
   Words words = GetParam().words;
   for (std::string& word : words)
@@ -46,7 +35,7 @@ TEST_P(Json, CarriesTheDataOfTheCommand) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Commands, Json,
+    Commands, CommandJson,
     ::testing::Values(
         Asked{{"run", kSamples + "/spur_quick.toml", "--out", "OUT"},
               {"/gouge_um/bound", "/operations/0", "/axes/X", "/ledger/chord"}},

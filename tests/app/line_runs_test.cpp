@@ -5,11 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/app/line_job.h"
+#include "tests/app/report.h"
 
 namespace toothpath::test {
 namespace {
-
-nlohmann::json report_in(const TestDir& dir) { return nlohmann::json::parse(file_text(dir / "out/report.json")); }
 
 std::string small_ball(const std::string& lines) { return operation("finishing", 2, lines); }
 
@@ -24,15 +23,15 @@ TEST(LineRuns, FlatAndBullNoseRough) {
     }
     const auto run = run_line_job(dir, gear + roughing(3) + small_ball("scallop = 0.02\nchord_tolerance = 0.002"));
     ASSERT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_TRUE(report_in(dir)["verified"].get<bool>());
-    EXPECT_EQ(report_in(dir)["operations"][0]["tool"], 3);
+    EXPECT_TRUE(report_in(dir / "out")["verified"].get<bool>());
+    EXPECT_EQ(report_in(dir / "out")["operations"][0]["tool"], 3);
     EXPECT_NE(file_text(dir / "out/program.ngc").find(flat ? "FLAT END MILL D1" : "BULL NOSE END MILL D1 R0.2"),
               std::string::npos);
   }
 }
 
 /// The largest cusp of a flank and of the rest that a report tells, um.
-nlohmann::json cusps_of(const TestDir& dir) { return report_in(dir)["scallop_um"]; }
+nlohmann::json cusps_of(const TestDir& dir) { return report_in(dir / "out")["scallop_um"]; }
 
 // Flanks by one ball, fillet and root by another, each with its own cusps; both are held on the cut surface.
 TEST(LineRuns, RegionsHaveTheirOwnCusps) {
@@ -62,7 +61,7 @@ TEST(LineRuns, OffsetAndSpurSamplesInOneStrip) {
     const auto run =
         run_program({"run", std::string(TOOTHPATH_SOURCE_DIR) + "/samples/" + name + ".toml", "--out", dir / "out"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
-    const auto report = report_in(dir);
+    const auto report = report_in(dir / "out");
     EXPECT_TRUE(report["verified"].get<bool>());
     const double left = report["left_um"]["flank"].get<double>();
     std::printf("%s: %.2f um left on the flanks, %.1f h\n", name, left, report["total_minutes"].get<double>() / 60);
@@ -88,7 +87,7 @@ TEST(LineRuns, RoughingIsFedByItsChip) {
     const TestDir dir;
     const auto run = run_line_job(dir, kLineGear + rough + finish);
     EXPECT_EQ(run.exit_code, 0) << run.err;
-    const auto report = report_in(dir);
+    const auto report = report_in(dir / "out");
     if (report.contains("engagement")) *engagement = report["engagement"];
     EXPECT_EQ(file_text(dir / "out/report.html").find("Teeth in the material") != std::string::npos,
               report.contains("engagement"));

@@ -9,7 +9,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::string kMachines = TOOTHPATH_SOURCE_DIR "/machines/data";
 constexpr const char* kPost =
     "\n[[body]]\nname = \"post\"\nof = \"bed\"\nshape = \"cylinder\"\nfrom = [65.0, 0.0, 130.0]\nto = [65.0, 0.0, "
     "200.0]\n"

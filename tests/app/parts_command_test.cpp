@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "tests/app/program.h"
+#include "tests/app/report.h"
 
 namespace toothpath::test {
 namespace {
@@ -36,8 +36,6 @@ std::set<std::string> programs_in(const std::string& folder) {
     if (name.starts_with("program") && !name.ends_with(".tbl")) out.insert(name);
   return out;
 }
-
-Json report_in(const std::string& folder) { return Json::parse(file_text(folder + "/report.json")); }
 
 std::string said(const Json& report, const char* list) {
   std::string out;

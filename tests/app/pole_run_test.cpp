@@ -104,22 +104,23 @@ void expect_poles_told(const PoleRun& r, const PoleJob& job, const TestDir& dir)
   }
 }
 
-struct Case {
+struct PoleCase {
   const char* pole;
   double aside_deg;
   std::optional<double> angle_deg;
 };
-std::ostream& operator<<(std::ostream& out, const Case& c) {
+std::ostream& operator<<(std::ostream& out, const PoleCase& c) {
   return out << c.pole << (c.aside_deg > 0 ? ", past the pole" : ", through the pole");
 }
-class PoleOptions : public ::testing::TestWithParam<Case> {};
+class PoleOptions : public ::testing::TestWithParam<PoleCase> {};
 INSTANTIATE_TEST_SUITE_P(Run, PoleOptions,
-                         ::testing::Values(Case{"slow", 0, {}}, Case{"hold", 0, {}}, Case{"through", 0, {}},
-                                           Case{"retract", 0, {}}, Case{"slow", 0.3, {}}, Case{"hold", 0.3, 1.0},
-                                           Case{"through", 0.3, 1.0}, Case{"retract", 0.3, 1.0}));
+                         ::testing::Values(PoleCase{"slow", 0, {}}, PoleCase{"hold", 0, {}}, PoleCase{"through", 0, {}},
+                                           PoleCase{"retract", 0, {}}, PoleCase{"slow", 0.3, {}},
+                                           PoleCase{"hold", 0.3, 1.0}, PoleCase{"through", 0.3, 1.0},
+                                           PoleCase{"retract", 0.3, 1.0}));
 
 TEST_P(PoleOptions, GoesTheWholeWayOnATrunnion) {
-  const Case& c = GetParam();
+  const PoleCase& c = GetParam();
   const TestDir dir;
   PoleJob job;
   job.pole = c.pole;

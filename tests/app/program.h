@@ -20,6 +20,8 @@
 namespace toothpath::test {
 
 inline const std::string kSamples = TOOTHPATH_SOURCE_DIR "/samples";
+inline const std::string kQuick = kSamples + "/spur_quick.toml";
+inline const std::string kMachines = TOOTHPATH_SOURCE_DIR "/machines/data";
 inline const std::string kBadJobs = TOOTHPATH_SOURCE_DIR "/tests/bad_jobs";
 
 struct Finished {

@@ -7,8 +7,6 @@
 namespace toothpath::test {
 namespace {
 
-const std::string kQuick = kSamples + "/spur_quick.toml";
-
 std::string with_program_table(const TestDir& dir, const std::string& table) {
   const std::string job = dir / "job.toml";
   std::ofstream(job, std::ios::binary) << file_text(kQuick) << "\n[program]\n" << table << "\n";

@@ -29,20 +29,6 @@ INSTANTIATE_TEST_SUITE_P(
                       PlaneCase{"heidenhain_ac", "h", " PLANE SPATIAL SPA-", "SEQ- TABLE", "SEQ+ TABLE",
                                 "BLK FORM CYLINDER Z R"}));
 
-std::string replaced(std::string text, const std::string& from, const std::string& to, bool all = false) {
-  std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  for (; at != std::string::npos; at = all ? text.find(from, at + to.size()) : std::string::npos)
-    text.replace(at, from.size(), to);
-  return text;
-}
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
-  return n;
-}
-
 /// A machine that ships, both rotaries with clamps.
 std::string machine_text(const std::string& machine) {
   std::string text = file_text(std::string(TOOTHPATH_SOURCE_DIR) + "/machines/data/" + machine + ".toml");
@@ -51,7 +37,7 @@ std::string machine_text(const std::string& machine) {
   return replaced(text, "[axes.A]\n", "[axes.A]\nclamp = [\"M68\", \"M69\"]\n");
 }
 
-std::string job_text(bool planes) {
+std::string planes_job(bool planes) {
   std::string text = file_text(kSamples + "/spur_quick.toml");
   text = replaced(text, "#:schema ../docs/schema/job.schema.json\n", "");
   text = replaced(text, "\"xyzac_large.toml\"", "\"machine.toml\"\naccept_assumed = true");
@@ -65,7 +51,7 @@ TEST_P(TiltedPlanesRun, IsVerifiedAndWhatIsEditedIsFound) {
   const PlaneCase& c = GetParam();
   const TestDir dir;
   write_file(dir / "machine.toml", machine_text(c.machine));
-  write_file(dir / "job.toml", job_text(true));
+  write_file(dir / "job.toml", planes_job(true));
   const auto run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   const Json report = Json::parse(file_text(dir / "out/report.json"));
@@ -77,7 +63,7 @@ TEST_P(TiltedPlanesRun, IsVerifiedAndWhatIsEditedIsFound) {
   EXPECT_NE(program.find(c.plane), std::string::npos) << program.substr(0, 3000);
   EXPECT_NE(program.find(c.pair), std::string::npos);
   EXPECT_EQ(program.find("G93"), std::string::npos);
-  EXPECT_EQ(count(program, c.other_pair), 0U);
+  EXPECT_EQ(times_in(program, c.other_pair), 0U);
   EXPECT_NE(program.find(c.blank), std::string::npos);
   const std::string sheet = file_text(dir / "out/setup.html");
   EXPECT_NE(sheet.find("M10 clamps, M11 releases"), std::string::npos);
@@ -88,7 +74,7 @@ TEST_P(TiltedPlanesRun, IsVerifiedAndWhatIsEditedIsFound) {
   };
   const auto as_it_is = checked(program);
   EXPECT_EQ(as_it_is.exit_code, 0) << as_it_is.err << as_it_is.out;
-  const auto other = checked(replaced(program, c.pair, c.other_pair, true));
+  const auto other = checked(replaced_all(program, c.pair, c.other_pair));
   EXPECT_EQ(other.exit_code, 1) << other.out;
   EXPECT_NE(other.err.find("travel: A = "), std::string::npos) << other.err;
   if (*c.blank == 0) return;
@@ -103,11 +89,11 @@ TEST_P(TiltedPlanesRun, IsVerifiedAndWhatIsEditedIsFound) {
 TEST(TiltedPlanesRun, AJobWithoutThemHasClampsToo) {
   const TestDir dir;
   write_file(dir / "machine.toml", machine_text("siemens_ac"));
-  write_file(dir / "job.toml", job_text(false));
+  write_file(dir / "job.toml", planes_job(false));
   const auto run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   const std::string program = file_text(dir / "out/program.mpf");
-  EXPECT_GT(count(program, "\nM11\n"), 1U);
+  EXPECT_GT(times_in(program, "\nM11\n"), 1U);
   const auto edited = [&](const std::string& text) {
     write_file(dir / "edited.mpf", text);
     return run_program({"check", dir / "job.toml", dir / "edited.mpf", "--out", dir / "checked"});
@@ -115,7 +101,7 @@ TEST(TiltedPlanesRun, AJobWithoutThemHasClampsToo) {
   const auto loose = edited(replaced(program, "\nM10\n", "\n"));
   EXPECT_EQ(loose.exit_code, 0) << loose.err;
   EXPECT_NE((loose.out + loose.err).find("C stands and is not clamped"), std::string::npos) << loose.out << loose.err;
-  const auto held = edited(replaced(program, "\nM11\n", "\n", true));
+  const auto held = edited(replaced_all(program, "\nM11\n", "\n"));
   EXPECT_EQ(held.exit_code, 3) << held.out;
   EXPECT_NE(held.err.find("edited.mpf:"), std::string::npos) << held.err;
   EXPECT_NE(held.err.find("C turns, and nothing has released it"), std::string::npos) << held.err;
@@ -126,7 +112,7 @@ TEST(TiltedPlanesRun, AGearBesideTheAxisOfTheTable) {
   for (const auto& [machine, extension] : {std::pair{"heidenhain_ac", "h"}, std::pair{"siemens_ac", "mpf"}}) {
     const TestDir dir;
     write_file(dir / "machine.toml", machine_text(machine));
-    write_file(dir / "job.toml", replaced(job_text(true), "[0.0, 0.0, 30.0]", "[20.0, 10.0, 30.0]"));
+    write_file(dir / "job.toml", replaced(planes_job(true), "[0.0, 0.0, 30.0]", "[20.0, 10.0, 30.0]"));
     const auto run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
     ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
     const std::string program = file_text(dir / (std::string("out/program.") + extension));

@@ -4,24 +4,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/app/program.h"
+#include "tests/app/report.h"
 
 namespace toothpath::test {
 namespace {
 
 using Json = nlohmann::json;
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  if (at != std::string::npos) text.replace(at, from.size(), to);
-  return text;
-}
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
-  return n;
-}
 
 struct CheckedRun {
   const char* machine;
@@ -40,7 +28,7 @@ void write_machine(const TestDir& dir, const CheckedRun& c, const std::string& t
   text = replaced(text, "\n[limits]", "\n[tool_check]\n" + table + c.lines + "\n[limits]");
   write_file(dir / "machine.toml", text);
 }
-std::string job_text(const std::string& program, const std::string& tool = "") {
+std::string tool_checks_job(const std::string& program, const std::string& tool = "") {
   std::string text = file_text(kSamples + "/spur_quick.toml");
   text = replaced(text, "#:schema ../docs/schema/job.schema.json\n", "");
   text = replaced(text, "\"xyzac_large.toml\"", "\"machine.toml\"\naccept_assumed = true");
@@ -55,10 +43,6 @@ Finished run_in(const TestDir& dir, const std::string& folder = "out", std::vect
   words.insert(words.end(), more.begin(), more.end());
   return run_program({words});
 }
-Json report_in(const TestDir& dir, const std::string& folder = "out") {
-  return Json::parse(file_text(dir / (folder + "/report.json")));
-}
-
 const CheckedRun kFanuc = {"fanuc_ac", "nc", "lines = [\"G65 P9858 T{tool}. H{tolerance}\"]\n", "G65 P9858 T1. H0.05",
                            "G0 G43.4 H1"};
 
@@ -79,15 +63,15 @@ TEST_P(ToolChecksRun, IsVerifiedAndWhatIsEditedIsFound) {
   const CheckedRun& c = GetParam();
   const TestDir dir;
   write_machine(dir, c);
-  write_file(dir / "job.toml", job_text("tool_check = \"none\""));
+  write_file(dir / "job.toml", tool_checks_job("tool_check = \"none\""));
   const Finished without = run_in(dir, "plain");
   ASSERT_EQ(without.exit_code, 0) << without.err << without.out;
   const std::string plain = file_text(dir / (std::string("plain/program.") + c.extension));
-  EXPECT_EQ(count(plain, c.words), 0U);
-  write_file(dir / "job.toml", job_text("tool_check = \"teeth\"\ntool_check_teeth = 25"));
+  EXPECT_EQ(times_in(plain, c.words), 0U);
+  write_file(dir / "job.toml", tool_checks_job("tool_check = \"teeth\"\ntool_check_teeth = 25"));
   const Finished run = run_in(dir);
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
-  const Json report = report_in(dir), before = report_in(dir, "plain");
+  const Json report = report_in(dir / "out"), before = report_in(dir / "plain");
   EXPECT_EQ(report["verified"], true);
   // Two operations of three stretches, and behind the last.
   ASSERT_EQ(report["tool_checks"].size(), 1U);
@@ -99,7 +83,7 @@ TEST_P(ToolChecksRun, IsVerifiedAndWhatIsEditedIsFound) {
   EXPECT_NE(report["warnings"].dump().find("tool_check: it is trusted that the lines move no rotary"),
             std::string::npos);
   const std::string program = file_text(dir / (std::string("out/program.") + c.extension));
-  EXPECT_EQ(count(program, c.words), 7U);
+  EXPECT_EQ(times_in(program, c.words), 7U);
   const std::string sheet = file_text(dir / "out/setup.html");
   EXPECT_NE(sheet.find("Checks of the tools"), std::string::npos);
   EXPECT_NE(sheet.find("X 350 Y 340 Z 60 mm machine"), std::string::npos);
@@ -136,16 +120,16 @@ TEST_P(ToolChecksRun, IsVerifiedAndWhatIsEditedIsFound) {
 TEST(ToolChecksOfRuns, RestartsAndParts) {
   const TestDir dir;
   write_machine(dir, kFanuc);
-  write_file(dir / "job.toml", job_text("tool_check = \"tool_changes\"\nteeth_per_program = 30"));
+  write_file(dir / "job.toml", tool_checks_job("tool_check = \"tool_changes\"\nteeth_per_program = 30"));
   const Finished run = run_in(dir);
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
-  EXPECT_EQ(count(file_text(dir / "out/program.nc"), kFanuc.words), 2U);
+  EXPECT_EQ(times_in(file_text(dir / "out/program.nc"), kFanuc.words), 2U);
   for (int part = 1; part <= 4; ++part)
-    EXPECT_EQ(count(file_text(dir / fmt::format("out/program_{}.nc", part)), kFanuc.words), 2U) << part;
+    EXPECT_EQ(times_in(file_text(dir / fmt::format("out/program_{}.nc", part)), kFanuc.words), 2U) << part;
   const Finished again = run_in(dir, "again", {"--restart", "1:30"});
   ASSERT_EQ(again.exit_code, 0) << again.err << again.out;
   const std::string program = file_text(dir / "again/program.nc");
-  EXPECT_EQ(count(program, kFanuc.words), 2U);
+  EXPECT_EQ(times_in(program, kFanuc.words), 2U);
   EXPECT_LT(program.find(kFanuc.words), program.find("M98"));
 }
 
@@ -153,7 +137,7 @@ TEST(ToolChecksOfRuns, RestartsAndParts) {
 TEST(ToolChecksOfRuns, TheWayToTheSetterIsProven) {
   const TestDir dir;
   write_machine(dir, kFanuc, "position = [64.0, 0.0, -15.0]\ntolerance = 0.05\n");
-  write_file(dir / "job.toml", job_text("tool_check = \"operations\""));
+  write_file(dir / "job.toml", tool_checks_job("tool_check = \"operations\""));
   const Finished run = run_in(dir);
   EXPECT_EQ(run.exit_code, 1) << run.out;
   EXPECT_NE(run.err.find("line"), std::string::npos) << run.err;
@@ -168,7 +152,7 @@ TEST(ToolChecksOfRuns, TheWayToTheSetterIsProven) {
 // A length that the control takes as it was measured counts in the ledger and in the verdict.
 TEST(ToolChecksOfRuns, AnUncertaintyIsARowOfTheLedger) {
   const TestDir dir;
-  write_file(dir / "job.toml", job_text("tool_check = \"tool_changes\""));
+  write_file(dir / "job.toml", tool_checks_job("tool_check = \"tool_changes\""));
   double bound = 0;
   for (const double um : {0.0, 0.1, 50.0}) {
     write_machine(dir, kFanuc, kTable + fmt::format("uncertainty = {}\n", um / 1000));
@@ -178,7 +162,7 @@ TEST(ToolChecksOfRuns, AnUncertaintyIsARowOfTheLedger) {
       continue;
     }
     ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
-    const Json report = report_in(dir);
+    const Json report = report_in(dir / "out");
     const std::string ledger = report["ledger"].dump();
     EXPECT_EQ(ledger.find("tool length") != std::string::npos, um > 0) << ledger;
     const double now = report["gouge_um"]["bound"].get<double>();
@@ -190,7 +174,7 @@ TEST(ToolChecksOfRuns, AnUncertaintyIsARowOfTheLedger) {
 TEST(ToolChecksOfRuns, WhatIsNotSaidIsRefused) {
   const TestDir dir;
   const auto told = [&](const std::string& program, const std::string& tool = "") {
-    write_file(dir / "job.toml", job_text(program, tool));
+    write_file(dir / "job.toml", tool_checks_job(program, tool));
     const Finished run = run_in(dir, "none");
     EXPECT_EQ(run.exit_code, 3) << run.out;
     return run.err;

@@ -5,26 +5,24 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/app/program.h"
+#include "tests/app/report.h"
 
 namespace toothpath::test {
 namespace {
 
 /// The quick sample with a ball of `diameter`, and with one more line under [verify].
-std::string job_with(const TestDir& dir, const std::string& diameter, const std::string& line = {}) {
+std::string job_with_mill(const TestDir& dir, const std::string& diameter, const std::string& line = {}) {
   std::string text = replaced(file_text(kSamples + "/spur_quick.toml"), "diameter = 1.0", "diameter = " + diameter);
   text = replaced(text, "shank_diameter = 0.95", "shank_diameter = 0.9");
   write_file(dir / "job.toml", text + "\n" + line + "\n");
   return dir / "job.toml";
 }
 
-nlohmann::json report_in(const TestDir& dir) { return nlohmann::json::parse(file_text(dir / "out/report.json")); }
-
 TEST(UnreachedRun, StandsBesideTheVerdictEverywhere) {
   const TestDir dir;
-  const auto run = run_program({"run", job_with(dir, "1.8"), "--out", dir / "out"});
+  const auto run = run_program({"run", job_with_mill(dir, "1.8"), "--out", dir / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const auto report = report_in(dir);
+  const auto report = report_in(dir / "out");
   EXPECT_TRUE(report["verified"].get<bool>());
   EXPECT_EQ(report["verdict"], "verified, root not finished");
   const auto& u = report["unreached"];
@@ -47,51 +45,51 @@ TEST(UnreachedRun, StandsBesideTheVerdictEverywhere) {
   EXPECT_NE(file_text(dir / "out/report.html").find("class=\"verdict part\""), std::string::npos);
   // The number told is no figure of speech: that ball reaches everything.
   const std::string told = fmt::format("{:.3f}", std::floor(u["largest_ball_mm"].get<double>() * 1000) / 1000);
-  ASSERT_EQ(run_program({"run", job_with(dir, told, "unreached = 0"), "--out", dir / "out"}).exit_code, 0);
-  EXPECT_EQ(report_in(dir)["verdict"], "verified");
-  EXPECT_EQ(report_in(dir)["unreached"]["points"], 0);
+  ASSERT_EQ(run_program({"run", job_with_mill(dir, told, "unreached = 0"), "--out", dir / "out"}).exit_code, 0);
+  EXPECT_EQ(report_in(dir / "out")["verdict"], "verified");
+  EXPECT_EQ(report_in(dir / "out")["unreached"]["points"], 0);
 }
 
 TEST(UnreachedRun, IsAVerdictAboveTheKey) {
   const TestDir dir;
-  ASSERT_EQ(run_program({"run", job_with(dir, "1.8"), "--out", dir / "out"}).exit_code, 0);
-  const double height = report_in(dir)["unreached"]["height_um"].get<double>() / 1000;
-  EXPECT_EQ(
-      run_program({"run", job_with(dir, "1.8", fmt::format("unreached = {:.6f}", height + 2e-6)), "--out", dir / "out"})
-          .exit_code,
-      0);
+  ASSERT_EQ(run_program({"run", job_with_mill(dir, "1.8"), "--out", dir / "out"}).exit_code, 0);
+  const double height = report_in(dir / "out")["unreached"]["height_um"].get<double>() / 1000;
+  EXPECT_EQ(run_program({"run", job_with_mill(dir, "1.8", fmt::format("unreached = {:.6f}", height + 2e-6)), "--out",
+                         dir / "out"})
+                .exit_code,
+            0);
   const auto run = run_program(
-      {"run", job_with(dir, "1.8", fmt::format("unreached = {:.6f}", height - 2e-6)), "--out", dir / "out"});
+      {"run", job_with_mill(dir, "1.8", fmt::format("unreached = {:.6f}", height - 2e-6)), "--out", dir / "out"});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_NE(run.err.find("([verify] unreached); the largest ball that reaches all of it has 1.20"), std::string::npos)
       << run.err;
   EXPECT_FALSE(std::filesystem::exists(dir / "out/program.ngc"));
-  EXPECT_EQ(report_in(dir)["verdict"], "not verified");
-  EXPECT_EQ(run_program({"run", job_with(dir, "1.8", "unreached = 0"), "--out", dir / "out"}).exit_code, 1);
+  EXPECT_EQ(report_in(dir / "out")["verdict"], "not verified");
+  EXPECT_EQ(run_program({"run", job_with_mill(dir, "1.8", "unreached = 0"), "--out", dir / "out"}).exit_code, 1);
 }
 
 // The same program, asked again from its text.
 TEST(UnreachedRun, CheckSaysTheSame) {
   const TestDir dir;
-  const std::string job = job_with(dir, "1.8");
+  const std::string job = job_with_mill(dir, "1.8");
   ASSERT_EQ(run_program({"run", job, "--out", dir / "out"}).exit_code, 0);
-  const auto ran = report_in(dir)["unreached"];
+  const auto ran = report_in(dir / "out")["unreached"];
   const auto check = run_program({"check", job, dir / "out/program.ngc", "--out", dir / "checked"});
   EXPECT_EQ(check.exit_code, 0) << check.err;
   EXPECT_NE(check.out.find("yes, root not finished"), std::string::npos) << check.out;
   EXPECT_EQ(nlohmann::json::parse(file_text(dir / "checked/report.json"))["unreached"], ran);
-  EXPECT_EQ(
-      run_program({"check", job_with(dir, "1.8", "unreached = 0.1"), dir / "out/program.ngc", "--out", dir / "checked"})
-          .exit_code,
-      1);
+  EXPECT_EQ(run_program({"check", job_with_mill(dir, "1.8", "unreached = 0.1"), dir / "out/program.ngc", "--out",
+                         dir / "checked"})
+                .exit_code,
+            1);
 }
 
 TEST(UnreachedRun, TheActiveFlankIsAlwaysAVerdict) {
   const TestDir dir;
-  const auto run = run_program({"run", job_with(dir, "2.2", "unreached = 50"), "--out", dir / "out"});
+  const auto run = run_program({"run", job_with_mill(dir, "2.2", "unreached = 50"), "--out", dir / "out"});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_NE(run.err.find("does not reach the active flank"), std::string::npos) << run.err;
-  EXPECT_FALSE(report_in(dir)["unreached"]["active_flank"].is_null());
+  EXPECT_FALSE(report_in(dir / "out")["unreached"]["active_flank"].is_null());
   EXPECT_FALSE(std::filesystem::exists(dir / "out/program.ngc"));
 }
 
@@ -99,7 +97,7 @@ TEST(UnreachedRun, NothingIsSaidWhereTheBallFits) {
   const TestDir dir;
   const auto run = run_program({"run", kSamples + "/spur_quick.toml", "--out", dir / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const auto report = report_in(dir);
+  const auto report = report_in(dir / "out");
   EXPECT_EQ(report["verdict"], "verified");
   // Of the ball nothing; that its neck is slender, and that it is small for roughing, are other matters.
   ASSERT_EQ(report["warnings"].size(), 2u) << report["warnings"];

@@ -59,6 +59,12 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
+inline std::size_t times_in(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
 /// `text` damaged at some places: bytes changed, taken out, repeated elsewhere, everything behind them cut off.
 /// `letters` are what the text is made of: a letter in place of another often leaves words that can be read.
 template <typename Generator>

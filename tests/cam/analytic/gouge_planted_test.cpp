@@ -15,7 +15,7 @@ using test::BruteDepth;
 using test::job_named;
 using test::PlannedJob;
 
-constexpr double kDepth = 0.002;
+constexpr double kPlantedDepth = 0.002;
 
 /// What is planted: which body cuts, the tool that it belongs to, one motion.
 struct Fault {
@@ -83,18 +83,18 @@ class BodyPlanter {
         high = angle;
         break;
       }
-    for (; high < 1.0 && brute_.deepest(f.shape, leaning(high), 1, 2).depth <= kDepth; high += 0.02) low = high;
+    for (; high < 1.0 && brute_.deepest(f.shape, leaning(high), 1, 2).depth <= kPlantedDepth; high += 0.02) low = high;
     if (high >= 1.0) return {};
     low = std::max(low, high - 0.05);
     BruteDepth near = brute_.deepest(f.shape, leaning(high), 4);
     for (int step = 0; step < 40 && high - low > 1e-8; ++step) {
       const double middle = 0.5 * (low + high);
       near = brute_.improved(f.shape, leaning(middle), near, 0.004);
-      (near.depth > kDepth ? high : low) = middle;
+      (near.depth > kPlantedDepth ? high : low) = middle;
     }
     f.motion = leaning(high);
     f.truth = brute_.deepest(f.shape, f.motion, 6, 6);
-    if (std::abs(f.truth.depth - kDepth) > 1e-4) return {};  // another place was deeper: not what was meant
+    if (std::abs(f.truth.depth - kPlantedDepth) > 1e-4) return {};  // another place was deeper: not what was meant
     if (body == "flute" &&
         brute_.deepest({R, f.tool.flute_length_mm, R, R, true}, f.motion, 4, 4).depth > f.truth.depth + 1e-4)
       return {};

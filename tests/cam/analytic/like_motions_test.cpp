@@ -18,8 +18,6 @@ using test::PlannedJob;
 constexpr double kRounded = 6e-4;  // mm: every coordinate of the tip of a copy, at most
 constexpr double kLean = 2e-6;     // the same of its axis
 
-Vec3 turned(const Vec3& v, double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitZ()) * v; }
-
 /// The first tooth, and others whose blocks end a little beside.
 struct Teeth {
   std::vector<path::ToolMotion> motions;

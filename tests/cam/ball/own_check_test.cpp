@@ -118,7 +118,7 @@ TEST(OwnCheck, AWrongPathIsLeftSoon) {
   EXPECT_LT(soon, 0.4 * all);
 }
 
-ball::PlanRefusal refusal_of(std::vector<path::MillingOperation> operations) {
+ball::PlanRefusal refusal_to(std::vector<path::MillingOperation> operations) {
   auto parameters = test::small_spur();
   parameters.zones.front().outer_radius_mm = 61;
   const auto gear = test::made(parameters);
@@ -130,14 +130,14 @@ ball::PlanRefusal refusal_of(std::vector<path::MillingOperation> operations) {
 }
 
 TEST(OwnCheck, AnOperationWithNothingToCutSaysWhy) {
-  const auto refusal = refusal_of({test::roughing(0, 0.8, 0.5, 0.1), test::roughing(0, 0.8, 0.5, 0.1)});
+  const auto refusal = refusal_to({test::roughing(0, 0.8, 0.5, 0.1), test::roughing(0, 0.8, 0.5, 0.1)});
   EXPECT_EQ(refusal.key, "operation[1]");
   EXPECT_NE(refusal.diagnostic.message.find("has nothing to cut: none of its "), std::string::npos)
       << refusal.diagnostic.message;
 }
 
 TEST(OwnCheck, StockThatIsGoneCannotBeLeft) {
-  const auto refusal = refusal_of({test::roughing(0, 0.8, 0.5, 0.05), test::finishing(0, 0.02, 0.004, 0.08)});
+  const auto refusal = refusal_to({test::roughing(0, 0.8, 0.5, 0.05), test::finishing(0, 0.02, 0.004, 0.08)});
   EXPECT_EQ(refusal.key, "operation[1].allowance");
   EXPECT_EQ(refusal.diagnostic.message,
             "allowance = 0.08 mm cannot be left: operation 0 (roughing) before it has cut down to 0.05 mm already, "

@@ -81,8 +81,8 @@ proof::GougeResult checked(const Planned& p, const std::vector<path::ToolMotion>
 }
 
 /// Flank `side` of a zone by sweeping the shaper, turned to where the path of space 0 cuts it.
-std::vector<Vec3> flank_points(const Planned& p, const face_gear::FaceGearParameters& gear, int zone, int side,
-                               int columns, int rows) {
+std::vector<Vec3> places_on_flank(const Planned& p, const face_gear::FaceGearParameters& gear, int zone, int side,
+                                  int columns, int rows) {
   const FaceFlank f(p.gear, zone, side);
   const BruteForceFaceGear brute(gear, gear.zones[std::size_t(zone)].helix_angle_rad);
   auto points = swept_flank(
@@ -102,7 +102,7 @@ struct Pass {
   std::vector<path::ToolMotion> motions;
   std::vector<BrutePose> way;
 };
-Pass pass_of(const Planned& p, int zone, int side) {
+Pass pass_in(const Planned& p, int zone, int side) {
   Pass pass;
   for (std::size_t k = 1; k < p.plan.path.records.size(); ++k) {
     const auto& r = p.plan.path.records[k];
@@ -175,8 +175,9 @@ TEST_P(LineProof, FindsWhatTheSweptFlankShows) {
   const double tau = GetParam().tool.half_angle_rad, r_0 = 0.5 * GetParam().tool.diameter_mm;
   for (int zone = 0; zone < p.part->zones(); ++zone)
     for (const int side : {1, -1}) {
-      const auto pass = pass_of(p, zone, side);
-      const auto truth = swept(flank_points(p, GetParam().parameters, zone, side, 31, 17), {r_0, tau, 0, 0}, pass.way);
+      const auto pass = pass_in(p, zone, side);
+      const auto truth =
+          swept(places_on_flank(p, GetParam().parameters, zone, side, 31, 17), {r_0, tau, 0, 0}, pass.way);
       const auto r = checked(p, pass.motions, p.tool);
       std::printf("%-10s zone %d side %+d: swept %.3f um, found %.3f um (%s), bound %.3f um\n", GetParam().name.c_str(),
                   zone, side, 1e3 * truth.gouge, 1e3 * r.measured_mm, r.deepest.patch.c_str(), 1e3 * r.bound_mm);
@@ -216,7 +217,7 @@ TEST(ModifiedLine, IsMilledAndProvenOnTheModifiedFlank) {
     const auto p = planned(job, 0);
     const double tau = job.tool.half_angle_rad, r_0 = 0.5 * job.tool.diameter_mm;
     for (const int side : {1, -1}) {
-      const auto pass = pass_of(p, 0, side);
+      const auto pass = pass_in(p, 0, side);
       const auto points = modified_points(p, 0, side, 31, 17);
       const auto truth = swept(points, {r_0, tau, 0, 0}, pass.way);
       const auto r = checked(p, pass.motions, p.tool);
@@ -233,7 +234,7 @@ TEST(ModifiedLine, IsMilledAndProvenOnTheModifiedFlank) {
       EXPECT_LT(truth.left, misfit + 4e-3);  // the corners of the ends, where the line is short
       auto plain = job.parameters;
       plain.modifications.clear();
-      const auto gone = swept(flank_points(p, plain, 0, side, 9, 5), {r_0, tau, 0, 0}, pass.way);
+      const auto gone = swept(places_on_flank(p, plain, 0, side, 9, 5), {r_0, tau, 0, 0}, pass.way);
       EXPECT_GT(gone.gouge, 0.01) << "the modification is not cut";
     }
   }
@@ -247,7 +248,7 @@ TEST_P(LineProof, PlantedErrorsAreFound) {
   const double r_0 = 0.5 * job.tool.diameter_mm;
   Random random(5);
   for (const auto& pass : p.plan.passes) {
-    const auto clean = pass_of(p, pass.zone, pass.side);
+    const auto clean = pass_in(p, pass.zone, pass.side);
     const FaceFlank f(p.gear, pass.zone, pass.side);
     const double length = pass.contact_top_mm - r_0;
     const bool forwards = (pass.records.front().axis.a - clean.way.front().axis).norm() < 1e-12;
@@ -310,8 +311,8 @@ TEST_P(LineProof, CutSurface) {
       most = std::max(most, double(g.excess_um[0][k]));
       least = std::min(least, double(g.excess_um[0][k]));
     }
-    const auto truth = swept(flank_points(p, GetParam().parameters, g.zone, side, 25, 17), {r_0, tau, 0, 0},
-                             pass_of(p, g.zone, side).way);
+    const auto truth = swept(places_on_flank(p, GetParam().parameters, g.zone, side, 25, 17), {r_0, tau, 0, 0},
+                             pass_in(p, g.zone, side).way);
     std::printf("%-10s zone %d %s: left %.3f um (brute force %.3f), least %.3f um (%.3f), %.2f s\n",
                 GetParam().name.c_str(), g.zone, to_string(g.patch), most, 1e3 * truth.left, least, -1e3 * truth.gouge,
                 seconds);
@@ -501,25 +502,23 @@ std::optional<Planned> judged(const LineJob& job) {
     EXPECT_NE(std::string(refused.what()).find(" mm"), std::string::npos) << refused.what();
     return p;
   }
-  for (const auto& planned_pass : p->plan.passes) {
-    const auto pass = pass_of(*p, planned_pass.zone, planned_pass.side);
-    const auto truth = swept(flank_points(*p, job.parameters, planned_pass.zone, planned_pass.side, 15, 9),
+  for (const auto& pass_of : p->plan.passes) {
+    const auto pass = pass_in(*p, pass_of.zone, pass_of.side);
+    const auto truth = swept(places_on_flank(*p, job.parameters, pass_of.zone, pass_of.side, 15, 9),
                              {0.5 * job.tool.diameter_mm, job.tool.half_angle_rad, 0, 0}, pass.way);
     const auto r = checked(*p, pass.motions, p->tool);
     std::printf(
         "%-14s m %.2f shaft %.1f deg zone %d side %+d: misfit %.2f um, swept left %.3f um, gouge %.3f um, found %.3f "
         "um "
         "on %s, bound %.3f um, shortened %.3f mm\n",
-        job.name.c_str(), job.parameters.module_mm, degrees(job.parameters.shaft_angle_rad), planned_pass.zone,
-        planned_pass.side, 1e3 * planned_pass.misfit_mm, 1e3 * truth.left, 1e3 * truth.gouge, 1e3 * r.measured_mm,
-        r.deepest.patch.c_str(), 1e3 * r.bound_mm, planned_pass.shortened_mm);
+        job.name.c_str(), job.parameters.module_mm, degrees(job.parameters.shaft_angle_rad), pass_of.zone, pass_of.side,
+        1e3 * pass_of.misfit_mm, 1e3 * truth.left, 1e3 * truth.gouge, 1e3 * r.measured_mm, r.deepest.patch.c_str(),
+        1e3 * r.bound_mm, pass_of.shortened_mm);
     EXPECT_GE(r.bound_mm, truth.gouge);
     EXPECT_GE(r.measured_mm, truth.gouge - 1e-4);
     EXPECT_LE(r.bound_mm, std::max(r.measured_mm, 0.0) + 2.5e-4);
     EXPECT_LT(r.bound_mm, 6e-4);
-    if (planned_pass.shortened_mm == 0) {
-      EXPECT_LT(truth.left, planned_pass.misfit_mm + planned_pass.chord_mm + 3e-4);
-    }
+    if (pass_of.shortened_mm == 0) { EXPECT_LT(truth.left, pass_of.misfit_mm + pass_of.chord_mm + 3e-4); }
   }
   return p;
 }

@@ -14,8 +14,6 @@ namespace {
 
 constexpr double kPitch = radians(6);
 
-Vec3 turned(const Vec3& v, double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitZ()) * v; }
-
 /// Passes of a tooth, 0.15 mm from each other, there and back with a lift at the end, in so many blocks a pass.
 std::vector<path::ToolMotion> tooth(int number, int blocks, double rounding, int line) {
   std::mt19937 random(unsigned(100 + number));

@@ -1,5 +1,6 @@
 // Facts that hold for every gear (section 9 of the page) and the extreme cases (section 11).
 #include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/eigen.hpp>
 #include <map>
 #include <random>
 

@@ -18,12 +18,12 @@ namespace {
 using cylindrical::InvoluteSpace;
 using tooth_space::Piece;
 
-struct Sample {
+struct SpaceSample {
   const char* name;
   cylindrical::CylindricalParameters parameters;
   int zone;
 };
-std::vector<Sample> samples() {
+std::vector<SpaceSample> samples() {
   return {{"spur", shifted_spur(), 0},
           {"pinion, left", double_helical_pinion(), 0},
           {"pinion, right", double_helical_pinion(), 1},
@@ -93,7 +93,7 @@ class SweptRack {
 };
 
 TEST(InvoluteSpace, IsWhatTheRackSweeps) {
-  for (const Sample& s : samples()) {
+  for (const SpaceSample& s : samples()) {
     const auto gear = made(s.parameters);
     const auto& space = gear.space(s.zone);
     const SweptRack rack(s.parameters, s.parameters.zones[std::size_t(s.zone)]);
@@ -111,7 +111,7 @@ TEST(InvoluteSpace, IsWhatTheRackSweeps) {
 }
 
 TEST(InvoluteSpace, PiecesJoin) {
-  for (const Sample& s : samples()) {
+  for (const SpaceSample& s : samples()) {
     const auto gear = made(s.parameters);
     const auto& space = gear.space(s.zone);
     for (const double v : {space.kernel().z_from, space.kernel().z_to})
@@ -127,7 +127,7 @@ TEST(InvoluteSpace, PiecesJoin) {
 
 /// The involute helicoid: constant moment, one principal curvature is 0, the other cos(beta_b) / (r_b theta).
 TEST(InvoluteSpace, FlanksAreInvoluteHelicoids) {
-  for (const Sample& s : samples()) {
+  for (const SpaceSample& s : samples()) {
     const auto gear = made(s.parameters);
     const auto& space = gear.space(s.zone);
     const auto& w = space.kernel();
@@ -148,7 +148,7 @@ TEST(InvoluteSpace, FlanksAreInvoluteHelicoids) {
 
 TEST(InvoluteSpace, AgreesWithFiftyDigits) {
   using F50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
-  for (const Sample& s : samples()) {
+  for (const SpaceSample& s : samples()) {
     const auto gear = made(s.parameters);
     const auto& space = gear.space(s.zone);
     const cylindrical::InvoluteKernel<F50> exact(s.parameters, s.parameters.zones[std::size_t(s.zone)]);
@@ -177,7 +177,7 @@ TEST(InvoluteSpace, AgreesWithFiftyDigits) {
 }
 
 TEST(InvoluteSpace, EnclosuresHold) {
-  for (const Sample& s : samples()) {
+  for (const SpaceSample& s : samples()) {
     const auto gear = made(s.parameters);
     const auto& space = gear.space(s.zone);
     Random random(5);
@@ -223,7 +223,7 @@ TEST(InvoluteSpace, EnclosuresHold) {
 }
 
 TEST(InvoluteSpace, FeetLieUnderTheirPlaces) {
-  for (const Sample& s : samples()) {
+  for (const SpaceSample& s : samples()) {
     const auto gear = made(s.parameters);
     const auto& space = gear.space(s.zone);
     on_every_piece(space, 100, [&](Piece piece, double u, double v) {
@@ -238,7 +238,7 @@ TEST(InvoluteSpace, FeetLieUnderTheirPlaces) {
 }
 
 TEST(InvoluteSpace, TipEdgesFollowTheHelix) {
-  for (const Sample& s : samples()) {
+  for (const SpaceSample& s : samples()) {
     const auto gear = made(s.parameters);
     const auto& space = gear.space(s.zone);
     const auto& w = space.kernel();
@@ -262,7 +262,7 @@ TEST(InvoluteSpace, TipEdgesFollowTheHelix) {
 
 /// Balls on the trimmed sheet touch and never cut: also where the ball is too large for the fillet.
 TEST(InvoluteSpace, BallCentresKeepTheirRadius) {
-  for (const Sample& s : samples())
+  for (const SpaceSample& s : samples())
     for (const double share : {0.15, 0.4}) {
       const auto gear = made(s.parameters);
       const auto& space = gear.space(s.zone);

@@ -1,62 +1,18 @@
-// CalculiX as judge, on the same bricks: displacements of one body, and the contact of one ring.
+// CalculiX as judge, on the same bricks: displacements and stress of one body.
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <sstream>
 
-#include "geometry/decks/bevel_deck.h"
 #include "geometry/decks/rows_deck.h"
 #include "geometry/elastic/brick_stress.h"
 #include "geometry/loaded_bevel/bevel_body.h"
+#include "tests/geometry/loaded/ccx.h"
 #include "tests/geometry/loaded/trial_gear.h"
 #include "tests/geometry/loaded_bevel/bevel_pairs.h"
 
 namespace toothpath::test {
 namespace {
-
-bool ccx_is_there() { return std::system("command -v ccx > /dev/null 2>&1") == 0; }
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// What CalculiX writes: printed numbers, and fields at nodes.
-struct CcxResults {
-  std::string dat, frd;
-};
-
-/// Runs a deck in a directory of its own.
-CcxResults run_deck(const std::string& deck, const std::string& name) {
-  const auto dir = std::filesystem::temp_directory_path() / ("toothpath_ccx_" + name + std::to_string(::getpid()));
-  std::filesystem::create_directories(dir);
-  std::ofstream(dir / "deck.inp") << deck;
-  const std::string command = "cd '" + dir.string() + "' && OMP_NUM_THREADS=1 ccx -i deck > ccx.log 2>&1";
-  EXPECT_EQ(std::system(command.c_str()), 0) << "see " << dir;
-  CcxResults out{text_of(dir / "deck.dat"), text_of(dir / "deck.frd")};
-  std::filesystem::remove_all(dir);
-  return out;
-}
-
-/// The numbers of the .dat file that stand a node and three values a line.
-std::vector<std::pair<int, Vec3>> vectors_at_nodes(const std::string& dat) {
-  std::istringstream in(dat);
-  std::vector<std::pair<int, Vec3>> out;
-  std::string line;
-  while (std::getline(in, line)) {
-    std::istringstream words(line);
-    int node = 0;
-    Vec3 v;
-    if (words >> node >> v.x() >> v.y() >> v.z() && (words >> std::ws).eof()) out.emplace_back(node, v);
-  }
-  return out;
-}
 
 /// Stress at integration points, in their order, of every brick: xx, yy, zz, xy, xz, yz in the .dat file.
 std::vector<std::vector<elastic::Stress>> stress_at_points(const std::string& dat) {
@@ -86,23 +42,6 @@ std::vector<elastic::Stress> stress_at_nodes(const std::string& frd, std::size_t
       out.at(node - 1)(static_cast<Eigen::Index>(k)) = std::stod(line.substr(13 + 12 * k, 12));
   }
   return out;
-}
-
-/// Of reactions about an axis: the nodes stand in the deck.
-double moment_of(const std::string& deck, const std::vector<std::pair<int, Vec3>>& reactions, const Vec3& origin,
-                 const Vec3& axis) {
-  std::istringstream in(deck);
-  std::string line;
-  std::vector<Vec3> nodes;
-  while (std::getline(in, line) && line.find("*ELEMENT") == std::string::npos) {
-    int id = 0;
-    Vec3 p;
-    if (std::sscanf(line.c_str(), "%d, %lf, %lf, %lf", &id, &p.x(), &p.y(), &p.z()) == 4) nodes.push_back(p);
-  }
-  double moment = 0;
-  for (const auto& [node, f] : reactions)
-    moment += (nodes.at(static_cast<std::size_t>(node - 1)) - origin).cross(f).dot(axis);
-  return moment;
 }
 
 /// Largest difference of the displacements of the flank of the middle tooth along its normals, part of the largest.
@@ -196,65 +135,6 @@ TEST(CalculiX, AgreesOnBodiesAndTheirStress) {
     }
     EXPECT_NEAR(most_ours, most_theirs, 0.05 * most_theirs);
   }
-}
-
-/// Outer ring of trial 4, three teeth clamped, phase 0, 20 um: docs/loaded_contact.md.
-TEST(CalculiX, AgreesOnTheContact) {
-  ASSERT_TRUE(ccx_is_there()) << "calculix-ccx is not installed; tools/packages.sh names it";
-  constexpr double kApproach = 0.02;
-  const auto gear = trial_gear();
-  loaded::PairOptions options;
-  options.gear.teeth = options.pinion.teeth = 3;
-  auto pair = loaded::make_loaded_pair(gear, 1, 30, options);
-  ASSERT_TRUE(pair);
-  pair->rings.erase(pair->rings.begin());
-  double force = 15000, ours[2] = {0, 0};
-  for (int round = 0; round < 6; ++round) {
-    loaded::Load load;
-    load.torque_nmm = force * pair->lever;
-    const auto p = loaded::loaded_position(*pair, load, 0);
-    ASSERT_TRUE(p) << p.error().message;
-    ours[0] = ours[1] = 0;
-    for (const auto& s : p->segments) ours[s.place.tooth + 1] += s.force;
-    force += (kApproach - p->approach_mm) * p->tangent;
-  }
-  decks::DeckOptions deck;
-  deck.approach_mm = kApproach;
-  const auto text = decks::contact_deck(gear, 1, 1, deck);
-  ASSERT_TRUE(text) << text.error().message;
-  const auto reactions = vectors_at_nodes(run_deck(*text, "contact").dat);
-  ASSERT_FALSE(reactions.empty());
-  const double moment = moment_of(*text, reactions, Vec3::Zero(), Vec3::UnitZ());
-  const double theirs = std::abs(moment) / pair->lever, total = ours[0] + ours[1];
-  EXPECT_NEAR(total, theirs, 0.05 * theirs) << ours[0] << " + " << ours[1];
-}
-
-/// W1 with W2, wall U, three teeth clamped, the wheel turned by 40 um: docs/loaded_contact.md 8.
-TEST(CalculiX, AgreesOnTheContactOfABevelPair) {
-  ASSERT_TRUE(ccx_is_there()) << "calculix-ccx is not installed; tools/packages.sh names it";
-  constexpr double kApproach = 0.04;
-  auto options = coarse_bodies();
-  for (auto* body : {&options.wheel, &options.pinion}) body->bricks = {4, 6, 3, 1, 3, 8, 20, 1};
-  const auto pair = single_pair(-1, options);
-  const double phi = 0.3 * pair.pair.pinion().pitch();
-  loaded::Load load;
-  load.torque_nmm = 1.5e6;
-  double ours = 0;
-  for (int round = 0; round < 5; ++round) {
-    const auto p = loaded_bevel::loaded_position(pair, load, phi);
-    ASSERT_TRUE(p) << p.error().message;
-    ours = load.torque_nmm;
-    load.torque_nmm += (kApproach - p->approach_mm) * p->tangent * pair.lever;
-  }
-  decks::BevelDeckOptions deck;
-  deck.wheel.rim_mm = deck.pinion.rim_mm = 20;
-  deck.phi_1 = phi, deck.approach_mm = kApproach;
-  const auto text = decks::bevel_deck(pair, 0, deck);
-  ASSERT_TRUE(text) << text.error().message;
-  const auto reactions = vectors_at_nodes(run_deck(*text, "bevel").dat);
-  ASSERT_FALSE(reactions.empty());
-  const double theirs = std::abs(moment_of(*text, reactions, pair.pair.wheel_apex(), pair.pair.wheel_axis()));
-  EXPECT_NEAR(ours, theirs, 0.1 * theirs);
 }
 
 }  // namespace

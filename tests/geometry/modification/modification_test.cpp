@@ -161,7 +161,7 @@ face_gear::FaceGearParameters modified(face_gear::FaceGearParameters g) {
   return g;
 }
 
-const std::vector<face_gear::FaceGearParameters>& gears() {
+const std::vector<face_gear::FaceGearParameters>& modified_faces() {
   static const std::vector<face_gear::FaceGearParameters> list{modified(small_spur()), modified(offset_gear()),
                                                                modified(conical_gear())};
   return list;
@@ -188,7 +188,7 @@ void on_flanks(const face_gear::FaceGear& gear, Visit visit) {
 
 /// Point, normal and curvatures of the flank as the drawing says it, without the program's fields.
 TEST(ModifiedFlank, ValueNormalAndCurvatureMatchFiftyDigits) {
-  for (const auto& parameters : gears()) {
+  for (const auto& parameters : modified_faces()) {
     auto p = parameters;
     p.modifications.pop_back();  // the grid has a test of its own
     const auto gear = made(p);
@@ -229,7 +229,7 @@ TEST(ModifiedFlank, ValueNormalAndCurvatureMatchFiftyDigits) {
 }
 
 TEST(ModifiedFlank, GridInDoubleIsTheGridInFiftyDigits) {
-  const auto gear = made(gears().front());
+  const auto gear = made(modified_faces().front());
   const auto& field = gear.rings()[0].modification->side(1);
   std::mt19937_64 random(5);
   for (int k = 0; k < 200; ++k) {
@@ -239,7 +239,7 @@ TEST(ModifiedFlank, GridInDoubleIsTheGridInFiftyDigits) {
 }
 
 TEST(ModifiedFlank, FilletAndRootJoinSmoothlyAndTheFootIsFound) {
-  for (const auto& p : gears()) {
+  for (const auto& p : modified_faces()) {
     const auto gear = made(p);
     const auto& ring = gear.rings()[0];
     const auto& f = ring.surface;
@@ -250,7 +250,7 @@ TEST(ModifiedFlank, FilletAndRootJoinSmoothlyAndTheFootIsFound) {
         const double Z = (std::sqrt(r * r - f.E * f.E) + f.shaper.r_p * f.Cg) / f.Sg;
         const auto g = f.fillet(side, f.shaper.A_t, Z);
         ASSERT_TRUE(g.defined);
-        using Piece = tooth_space::Piece;
+        using tooth_space::Piece;
         const auto flank = side > 0 ? Piece::flank_plus : Piece::flank_minus,
                    fillet = side > 0 ? Piece::fillet_plus : Piece::fillet_minus;
         const auto a = sheet.at(flank, f.shaper.theta_t, g.B), b = sheet.at(fillet, f.shaper.A_t, Z);
@@ -307,7 +307,7 @@ TEST(ModifiedFlank, WhatDoesNotFitIsRefusedWithItsLimit) {
 
 /// An interval holds every value and both derivatives at all places in it.
 TEST(SmoothCurve, IntervalsHoldWhatTheyCover) {
-  const auto gear = made(gears().front());
+  const auto gear = made(modified_faces().front());
   const auto& field = gear.rings()[0].modification->side(-1);
   using D = Dual<double, 2>;
   using D2 = Dual<D, 2>;

@@ -53,13 +53,13 @@ double words(int side, double y, double x, double depth, double face) {
   return sum;
 }
 
-struct Case {
+struct ModifiedCase {
   const char* name;
   Part plain, modified;
 };
-const std::vector<Case>& cases() {
-  static const std::vector<Case> kCases = [] {
-    std::vector<Case> out;
+const std::vector<ModifiedCase>& cases() {
+  static const std::vector<ModifiedCase> kCases = [] {
+    std::vector<ModifiedCase> out;
     const auto add = [&](const char* name, Part plain) {
       auto modified = tooth_space::modified_part(plain, many());
       out.push_back({name, plain, std::move(modified).value()});
@@ -81,7 +81,7 @@ const std::vector<Case>& cases() {
 }
 
 /// Random places of all moved pieces of a case, down to their borders.
-void everywhere(const Case& c, int count,
+void everywhere(const ModifiedCase& c, int count,
                 const std::function<void(const ToothSpace&, const ToothSpace&, Piece, double, double, double)>& see) {
   Random random(7);
   for (int zone = 0; zone < c.plain->zones(); ++zone) {
@@ -101,7 +101,7 @@ void everywhere(const Case& c, int count,
 }
 
 TEST(ModifiedPart, WhatIsGoneIsWhatTheWordsSay) {
-  for (const Case& c : cases())
+  for (const ModifiedCase& c : cases())
     everywhere(
         c, 60, [&](const ToothSpace& plain, const ToothSpace& modified, Piece piece, double u, double v, double s) {
           const auto p = plain.at(piece, u, v), q = modified.at(piece, u, v);
@@ -123,7 +123,7 @@ TEST(ModifiedPart, WhatIsGoneIsWhatTheWordsSay) {
 }
 
 TEST(ModifiedPart, PiecesStayOneSmoothSheet) {
-  for (const Case& c : cases())
+  for (const ModifiedCase& c : cases())
     for (int zone = 0; zone < c.plain->zones(); ++zone) {
       const ToothSpace &plain = c.plain->space(zone), &modified = c.modified->space(zone);
       const auto& ring = plain.outline();
@@ -147,7 +147,7 @@ TEST(ModifiedPart, PiecesStayOneSmoothSheet) {
 
 TEST(ModifiedPart, DerivativesAreExactAndFeetLieUnderTheirPlaces) {
   Random random(3);
-  for (const Case& c : cases())
+  for (const ModifiedCase& c : cases())
     everywhere(c, 25, [&](const ToothSpace&, const ToothSpace& space, Piece piece, double u, double v, double) {
       const double e = 1e-5;
       const auto q = *space.at(piece, u, v);
@@ -174,7 +174,7 @@ TEST(ModifiedPart, DerivativesAreExactAndFeetLieUnderTheirPlaces) {
 }
 
 TEST(ModifiedPart, EnclosuresHold) {
-  for (const Case& c : cases()) {
+  for (const ModifiedCase& c : cases()) {
     Random random(5);
     double widest = 0;
     everywhere(c, 40, [&](const ToothSpace& plain, const ToothSpace& space, Piece piece, double u, double v, double) {
@@ -244,7 +244,7 @@ TEST(ModifiedPart, FormTellsWhatIsTakenAndRefusesWhatIsNoOffset) {
 
 // A smooth error of the flanks, measured on a grid: the part that answers it stands off by as much, the other way.
 TEST(ModifiedPart, CorrectionsAnswerWhatWasMeasured) {
-  for (const Case& c : cases()) {
+  for (const ModifiedCase& c : cases()) {
     const auto error = [](double y, double x) { return 0.02 + 0.01 * y * x - 0.015 * x * x; };
     tooth_space::Corrections corrections;
     for (int zone = 0; zone < c.plain->zones(); ++zone) {
@@ -260,7 +260,7 @@ TEST(ModifiedPart, CorrectionsAnswerWhatWasMeasured) {
       corrections.push_back(std::make_shared<modification::RingCorrection>(modification::RingCorrection{*fit, *fit}));
     }
     const auto aimed = tooth_space::modified_part(c.plain, {}, corrections).value();
-    const Case answered{c.name, c.plain, aimed};
+    const ModifiedCase answered{c.name, c.plain, aimed};
     everywhere(answered, 30,
                [&](const ToothSpace& plain, const ToothSpace& space, Piece piece, double u, double v, double) {
                  if (!is_flank(piece)) return;

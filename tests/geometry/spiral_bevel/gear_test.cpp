@@ -237,7 +237,7 @@ INSTANTIATE_TEST_SUITE_P(All, SpiralBevelGears,
                                          Sample{"tilted", tilted_gear}),
                          [](const testing::TestParamInfo<Sample>& s) { return std::string(s.param.name); });
 
-struct Printed {
+struct PrintedRoll {
   int side;
   bool fillet;
   double r, z, azimuth;
@@ -245,11 +245,11 @@ struct Printed {
   double roll;
 };
 
-void expect_printed(const SpiralBevelParameters& parameters, std::span<const Printed> all) {
+void expect_printed(const SpiralBevelParameters& parameters, std::span<const PrintedRoll> all) {
   const auto gear = made(parameters);
   const auto& k = gear.space().kernel();
   const auto& chart = gear.space().outline().chart;
-  for (const Printed& q : all) {
+  for (const PrintedRoll& q : all) {
     const Piece piece = q.fillet ? tooth_space::fillet_of(q.side) : tooth_space::flank_of(q.side);
     const auto& f = k.flank(q.side);
     const Vec3 target(q.r, 0, q.z);
@@ -264,7 +264,7 @@ void expect_printed(const SpiralBevelParameters& parameters, std::span<const Pri
 }
 
 TEST(SpiralBevel, PlacesAndNormalsAreThePrintedOnes) {
-  const Printed pinion[] = {
+  const PrintedRoll pinion[] = {
       {1,
        false,
        27.919052077,
@@ -308,7 +308,7 @@ TEST(SpiralBevel, PlacesAndNormalsAreThePrintedOnes) {
        {0.382352062880, -0.698843474734, -0.604503678924},
        -0.079532822604},
   };
-  const Printed gear[] = {
+  const PrintedRoll gear[] = {
       {1,
        false,
        76.617525577,

@@ -37,7 +37,7 @@ TEST(StraightBevel, NumbersAreThePrintedOnes) {
   EXPECT_NEAR(degrees(made(g).root_angle()), 24.40602, 5e-6);
 }
 
-struct Printed {
+struct PrintedPlace {
   int side;
   bool fillet;
   double r, z, azimuth;
@@ -45,7 +45,7 @@ struct Printed {
 };
 
 TEST(StraightBevel, PlacesAndNormalsAreThePrintedOnes) {
-  const Printed all[] = {
+  const PrintedPlace all[] = {
       {1, false, 26.084912068, 49.659170090, -0.085117587, {0.454802881162, 0.868012318367, -0.199271057731}},
       {-1, false, 26.084912068, 49.659170090, 0.085117587, {0.454802881162, -0.868012318367, -0.199271057731}},
       {1, false, 23.141125544, 41.292364251, -0.115660789, {0.542882676410, 0.801620378377, -0.250366069237}},
@@ -54,7 +54,7 @@ TEST(StraightBevel, PlacesAndNormalsAreThePrintedOnes) {
       {-1, true, 23.479098882, 50.962076683, 0.042712262, {0.592797856518, -0.762956131706, -0.257853916782}},
   };
   const auto gear = made(khk_pinion());
-  for (const Printed& q : all) {
+  for (const PrintedPlace& q : all) {
     const Piece piece =
         q.fillet ? (q.side > 0 ? Piece::fillet_plus : Piece::fillet_minus) : tooth_space::flank_of(q.side);
     // The place of the piece with the printed polar angle.
