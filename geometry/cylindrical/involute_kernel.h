@@ -126,7 +126,7 @@ struct InvoluteKernel {
   [[nodiscard]] tooth_space::Outline outline() const {
     tooth_space::Outline out;
     out.chart = {0, 1};
-    out.pitch = 6.283185307179586476925286766559 / teeth;
+    out.pitch = kTwoPi / teeth;
     out.s_from = -z_to;
     out.s_to = -z_from;
     out.from = "upper";

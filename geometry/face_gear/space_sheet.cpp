@@ -1,6 +1,5 @@
 #include "geometry/face_gear/space_sheet.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -326,39 +325,10 @@ std::optional<PatchFoot> SpaceSheet::nominal_flank_foot(Piece piece, const Vec3&
 std::optional<PatchFoot> SpaceSheet::foot(Piece piece, const Vec3& c, double u, double v) const {
   if (is_flank(piece) && !ring_.displaced() && std::abs(v) < 1.4)
     if (auto f = nominal_flank_foot(piece, c, u, v)) return f;
-  PatchFoot f;
-  f.u = u;
-  f.v = v;
-  double previous = INFINITY;
-  for (int k = 0; k < 30; ++k) {
-    const auto q = at(piece, f.u, f.v);
-    if (!q) return {};
-    if (k == 0) f.distance = (c - q->p).dot(q->n);
-    const Vec3 residual = c - q->p - q->n * f.distance;
-    const double error = residual.norm();
-    f.at = *q;
-    if (error < 2e-13 * (1 + c.norm()) || (error < 1e-11 && error >= 0.5 * previous)) {
-      f.distance = (c - q->p).dot(q->n);
-      return f;
-    }
-    previous = error;
-    Mat3 J;
-    J.col(0) = q->pu + q->nu * f.distance;
-    J.col(1) = q->pv + q->nv * f.distance;
-    J.col(2) = q->n;
-    Vec3 step = J.inverse() * residual;
-    if (!step.allFinite()) return {};
-    // Roll, normal and base-tangent angles move by at most 0.15 rad, sections and distances by a fraction of a
-    // millimetre scale.
-    const double limit_u = piece == Piece::root ? 0.5 : 0.15;
-    const double limit_v = is_flank(piece) ? 0.15 : 2 * ring_.surface.shaper.m_t;
-    const double shrink = std::max({1.0, std::abs(step[0]) / limit_u, std::abs(step[1]) / limit_v});
-    step /= shrink;
-    f.u += step[0];
-    f.v += step[1];
-    f.distance += step[2];
-  }
-  return {};
+  // Roll, normal and base-tangent angles move by at most 0.15 rad, sections and distances by a fraction of a millimetre
+  // scale.
+  const Vec2 most(piece == Piece::root ? 0.5 : 0.15, is_flank(piece) ? 0.15 : 2 * ring_.surface.shaper.m_t);
+  return tooth_space::search_foot(*this, piece, c, u, v, most);
 }
 
 std::optional<PatchFoot> SpaceSheet::next_foot(Piece piece, const Vec3& c, const PatchFoot& near) const {

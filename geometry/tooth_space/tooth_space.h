@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/base/angle.h"
 #include "geometry/base/vec.h"
 #include "geometry/tooth_space/enclosure.h"
 #include "geometry/tooth_space/piece.h"
@@ -125,7 +126,7 @@ struct Outline {
                                              double large_end) {
   Outline out;
   out.chart = {-sine, cosine};
-  out.pitch = 6.283185307179586476925286766559 / teeth;
+  out.pitch = kTwoPi / teeth;
   out.s_from = -large_end;
   out.s_to = -small_end;
   out.from = "large";
