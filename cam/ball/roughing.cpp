@@ -108,7 +108,7 @@ class RoughingPlanner {
       lowest = std::min(lowest, walls_.back().bottom_height);
       out_.reaches_root = out_.reaches_root && walls_.back().bottom_height == 0;
     }
-    const double top = o_.blank_top_mm + o_.end_centre_mm - walls_[walls_.size() / 2].root;
+    const double top = o_.blank_top_mm + o_.end_centre_mm - deepest_root();
     for (double height = top - o_.step_down_mm;; height -= o_.step_down_mm) {
       // The last layer follows the bottom: the root land, or the corner between both walls where the ball is too wide.
       const bool last = height <= lowest + 1e-6;
@@ -121,6 +121,18 @@ class RoughingPlanner {
 
  private:
   [[nodiscard]] const tooth_space::Chart& chart() const { return sheet_.space().outline().chart; }
+  /// Layers keep their heights above the root, and of teeth that taper the first one is thickest where the root lies
+  /// deepest below the tips: its height there, were all tips as high as the highest; no higher than in the middle.
+  [[nodiscard]] double deepest_root() const {
+    const tooth_space::ToothSpace& space = sheet_.space();
+    const auto& ring = space.outline();
+    const double highest = std::max(space.tip(ring.s_from), space.tip(ring.s_to));
+    double root = walls_[walls_.size() / 2].root;
+    for (std::size_t k = 0; k < walls_.size(); ++k)
+      if (const double s = sheet_.stations()[k].r; s >= ring.s_from && s <= ring.s_to)
+        root = std::min(root, walls_[k].root + (highest - space.tip(s)));
+    return root;
+  }
   struct Width {
     double plus = 0, minus = 0, height = 0;  // azimuths of the extreme centres and their height
   };

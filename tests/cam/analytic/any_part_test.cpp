@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -408,6 +409,34 @@ TEST(ToolPathsOnACone, CutTheSpaceAndNothingElse) {
 }
 TEST(ToolPathsOnACone, CutCurvedSpacesAndNothingElse) {
   tool_paths_cut_the_space_and_nothing_else(solid_of(narrow_curved(6, 0)), 1.6);
+}
+
+// Teeth that taper: what stands above the first layer is no thicker at the large end than a layer.
+TEST(ToolPathsOnACone, NoLayerIsThickerThanAsked) {
+  constexpr double kStep = 0.5, kBall = 1.2;
+  const auto gear = straight_bevel::StraightBevelGear::make(khk_pinion(straight_bevel::Form::octoid)).value();
+  const auto part = straight_bevel::part_of(gear);
+  std::vector<tool::ToolAssembly> tools{ball_mill(kBall, 9, kBall, 22, 10)};
+  auto rough = operation(path::OperationType::roughing, 0);
+  rough.step_down_mm = rough.step_over_mm = kStep;
+  rough.allowance_mm = 0.15;
+  auto planned = plan::plan_milling({part, ball::reach_of(tools)}, tools, {rough}, {});
+  ASSERT_FALSE(planned.refused()) << planned.refused()->diagnostic.message;
+  const auto& records = planned.value().paths[0].records;
+  const auto& ring = part->space(0).outline();
+  constexpr int kPlaces = 20;
+  std::array<double, kPlaces + 1> highest;  // bottom of the ball that cuts there, below the tips
+  highest.fill(-INFINITY);
+  for (std::size_t k = 1; k < records.size(); ++k)
+    for (int i = 0; i <= 50 && records[k].kind == path::MoveKind::feed; ++i) {
+      const auto centre = [&](const path::ClRecord& r) { return Vec3(r.tip + 0.5 * kBall * r.axis); };
+      const Vec3 c = centre(records[k - 1]) + i / 50.0 * (centre(records[k]) - centre(records[k - 1]));
+      const double share = (ring.chart.along(c) - ring.s_from) / (ring.s_to - ring.s_from);
+      if (share < 0 || share > 1) continue;
+      double& found = highest[std::size_t(std::lround(share * kPlaces))];
+      found = std::max(found, ring.chart.up(c) - 0.5 * kBall - part->space(0).tip(ring.chart.along(c)));
+    }
+  for (const double h : highest) EXPECT_GT(h, -1.05 * kStep);
 }
 
 /// A space that bounds no bends of its fillets.
