@@ -321,9 +321,10 @@ double FaceGear::blank_top() const {
 
 bool FaceGear::in_blank(const Vec3& p) const {
   const double r = radius(p);
-  return p.z() <= blank_top() && std::any_of(rings_.begin(), rings_.end(), [&](const FaceGearRing& ring) {
-           return r >= ring.zone.inner_radius_mm && r <= ring.zone.outer_radius_mm;
-         });
+  return std::any_of(rings_.begin(), rings_.end(), [&](const FaceGearRing& ring) {
+    return r >= ring.zone.inner_radius_mm && r <= ring.zone.outer_radius_mm &&
+           p.z() <= ring.surface.z_tip(r) + parameters_.allowance_top_mm;
+  });
 }
 
 double FaceGear::groove_floor() const {

@@ -61,7 +61,7 @@ class FaceGear {
       const std::vector<std::shared_ptr<const modification::RingCorrection>>& corrections) const;
   /// Highest point of the blank (tip surface plus stock), mm in z.
   [[nodiscard]] double blank_top() const;
-  /// Does the uncut blank hold this place? One ring for each zone, up to the top of the stock.
+  /// Does the uncut blank hold this place? One ring for each zone, up to the stock above its tips.
   [[nodiscard]] bool in_blank(const Vec3& p) const;
   /// Height z of the relief groove's floor; only with two zones. `groove_depth_mm` is measured from the tip surface of
   /// the inner ring at mid-groove; without it the floor lies 0.25 m below the lowest root between the two rings.

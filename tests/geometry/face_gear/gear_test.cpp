@@ -37,6 +37,20 @@ TEST(FaceGearMake, AcceptsBothSamples) {
   EXPECT_FALSE(d.rings()[0].limits.flanks[0].undercut_radius);
 }
 
+TEST(FaceGearMake, TheBlankFollowsTheTips) {
+  auto p = steep_gear(105, 77.5, 85.5);
+  p.allowance_top_mm = 0.5;
+  const auto gear = face_gear::FaceGear::make(p);
+  ASSERT_TRUE(gear.has_value());
+  const auto& surface = gear.value().rings()[0].surface;
+  EXPECT_GT(std::abs(surface.z_tip(77.6) - surface.z_tip(85.4)), 2);
+  for (const double r : {77.6, 81.5, 85.4}) {
+    EXPECT_TRUE(gear.value().in_blank({r, 0, surface.z_tip(r) + 0.499}));
+    EXPECT_FALSE(gear.value().in_blank({r, 0, surface.z_tip(r) + 0.501}));
+  }
+  EXPECT_FALSE(gear.value().in_blank({77.4, 0, -40}));
+}
+
 TEST(FaceGearMake, TracesOfBothHalvesMeetAtTheReferenceRadius) {
   const auto made = face_gear::FaceGear::make(double_helical_parameters());
   const auto& gear = made.value();
