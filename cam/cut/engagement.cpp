@@ -135,6 +135,7 @@ class OverloadAlong {
       : motions_(motions),
         asked_(asked),
         in_blank_(q.in_blank),
+        cutting_(q.cutting),
         chart_(q.chart),
         rings_(rings_of(q.mill.cutting(), kLoadRings)),
         radius_(q.mill.cutting().largest_radius()),
@@ -167,6 +168,7 @@ class OverloadAlong {
     Vec3 at;
     double share = 0;   ///< of the feed along its normal
     double height = 0;  ///< above the tip
+    double layer = 0;   ///< h of the chart above the lowest place of the mill: the same where its axis stands upright
   };
 
   [[nodiscard]] Overload along(const path::ToolMotion& m, std::size_t done) const {
@@ -184,23 +186,33 @@ class OverloadAlong {
     const Vec3 across = feed - feed.dot(axis) * axis;
     const Vec3 u = across.norm() > kAlongAxis ? Vec3(across.normalized()) : Vec3(axis.unitOrthogonal());
     const Vec3 v = axis.cross(u);
+    const double low = lowest(tip, axis);
     std::vector<Edge> out;
     for (const PointRing& ring : rings_)
       for (int k = -kLoadDirections; k <= kLoadDirections; ++k) {
         const double a = k * kHalfChip / kLoadDirections;
         const Vec3 n = std::cos(a) * u + std::sin(a) * v;
         const double share = (ring.normal_out * n + ring.normal_up * axis).dot(feed);
-        if (share >= kLeastShare) out.push_back({tip + ring.height * axis + ring.radius * n, share, ring.height});
+        if (share < kLeastShare) continue;
+        const Vec3 at = tip + ring.height * axis + ring.radius * n;
+        out.push_back({at, share, ring.height, chart_.up(at) - low});
       }
     return out;
+  }
+  /// h of the lowest place of the cutting part.
+  [[nodiscard]] double lowest(const Vec3& tip, const Vec3& axis) const {
+    const Vec3 up = chart_.up_at(azimuth(tip)), at(0, 0, tip.dot(up)), leans(0, 0, axis.dot(up));
+    double low = INFINITY;
+    for (const tool::RoundedFrustum& body : cutting_) low = std::min(low, tool::lowest_z(body, at, leans));
+    return low;
   }
   void look(const Edge& e, double quick, std::size_t done, Overload& most) const {
     const double chip = quick * e.share;
     if (chip > std::max(kLoadFactor, most.chip_share) && lies_below(e.at, kLeastStock, done)) most.chip_share = chip;
     const double deep = kLoadFactor * asked_.step_down_mm;  // what is deeper stands there, too
-    if (deep > 0 && e.share >= kAhead && e.height > std::max(deep, most.depth_mm) &&
-        e.height < deep + kLoadHeights * radius_ && lies_below(e.at, kLeastStock, done))
-      most.depth_mm = e.height;
+    if (deep > 0 && e.share >= kAhead && e.layer > std::max(deep, most.depth_mm) &&
+        e.layer < deep + kLoadHeights * radius_ && lies_below(e.at, kLeastStock, done))
+      most.depth_mm = e.layer;
     if (!(asked_.stock_mm < INFINITY) || e.height > kLoadHeights * radius_) return;
     for (double stock = std::max(kLoadFactor * asked_.stock_mm, kDeeper * most.stock_mm);
          stock < radius_ && lies_below(e.at, std::max(stock, kLeastStock), done); stock *= kDeeper)
@@ -223,6 +235,7 @@ class OverloadAlong {
   const std::vector<path::ToolMotion>& motions_;
   const AskedLoad& asked_;
   const std::function<bool(const Vec3&)>& in_blank_;
+  const std::vector<tool::RoundedFrustum>& cutting_;
   tooth_space::Chart chart_;
   std::vector<PointRing> rings_;
   double radius_;

@@ -48,7 +48,7 @@ inline constexpr double kLoadFactor = 1.5;
 /// Where motions take off more than `kLoadFactor` times what is asked; 0: they do not. Lines of the motions.
 struct Overload {
   double chip_share = 0;  ///< largest chip, in feeds per tooth as asked
-  double depth_mm = 0;    ///< greatest height above the tip of a chip right ahead
+  double depth_mm = 0;    ///< greatest height above the lowest place of the mill of a chip right ahead
   double stock_mm = 0;    ///< a chip lies so far below all that was free before
   int chip_line = 0, depth_line = 0, stock_line = 0;
 };

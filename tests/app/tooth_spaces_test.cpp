@@ -241,7 +241,8 @@ TEST_P(ToothSpaces, WhatOneToothTakesOffIsJudgedThere) {
   more.insert(more.end(), {fmt::format("Z{:.3f} F3000", z), start + " F150"});
   lines_.insert(lines_.begin() + std::ptrdiff_t(first), more.begin(), more.end());
   const Verdict found = check(lines_);
-  expect_told(found, {"tooth 5: operation 0: at line [0-9]+ the chip reaches [0-9.]+ mm or more above the tip"});
+  expect_told(found,
+              {"tooth 5: operation 0: at line [0-9]+ the chip reaches [0-9.]+ mm or more above the lowest place"});
   EXPECT_EQ(found.reasons.find("gouge"), std::string::npos) << found.reasons;
 }
 

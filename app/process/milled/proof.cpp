@@ -390,7 +390,8 @@ void MilledCheck::judge_load(std::span<const path::ToolMotion> one_space, std::v
           n, load.chip_line, load.chip_share, cut::kLoadFactor));
     if (load.depth_mm > 0)
       reasons.push_back(
-          fmt::format("operation {}: at line {} the chip reaches {:.3f} mm or more above the tip, step_down = {:g} mm, "
+          fmt::format("operation {}: at line {} the chip reaches {:.3f} mm or more above the lowest place of the mill, "
+                      "step_down = {:g} mm, "
                       "limit {:.1f} times that: a cut of the layer above is missing",
                       n, load.depth_line, load.depth_mm, op.step_down_mm, cut::kLoadFactor));
     if (load.stock_mm > 0)

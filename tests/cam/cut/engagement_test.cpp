@@ -140,6 +140,19 @@ TEST(Overload, OfAPassThatIsMissing) {
   }
 }
 
+// A mill that leans where it goes has its layer high along its axis, and no deeper for that; twice as deep it is.
+TEST(Overload, OfAMillThatLeans) {
+  constexpr double kLayer = 4 / 3.0;
+  const auto leaning = [](double depth) {
+    path::ToolMotion m = fed(0, 0, 1, 1);
+    m.axis_from = m.axis_to = Vec3(std::sin(radians(30)), 0, std::cos(radians(30)));
+    for (Vec3* tip : {&m.tip_from, &m.tip_to}) *tip += Vec3(0, 0, 2 - depth) - 2 * m.axis_from;  // of a ball of 4 mm
+    return m;
+  };
+  EXPECT_EQ(overload({leaning(kLayer)}, {100, kLayer, INFINITY}).depth_mm, 0);
+  EXPECT_GT(overload({leaning(2 * kLayer)}, {100, kLayer, INFINITY}).depth_mm, 1.5 * kLayer);
+}
+
 // The ball of an operation before stood higher: the stock below it is that difference.
 TEST(Overload, OfStockThatAnEarlierOperationLeft) {
   const auto tool = tool::proof_tool(mill(tool::CutterType::ball_end_mill, 4));
