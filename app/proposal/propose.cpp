@@ -95,7 +95,9 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_cylindrical(const Wishes& w
   return chosen;
 }
 
-double straight_bevel_diameter_mm(const straight_bevel::StraightBevelParameters& p) {
+/// Over the tips at the large end.
+template <typename BevelParameters>
+double bevel_diameter_mm(const BevelParameters& p) {
   return p.outer_transverse_module_mm * p.teeth + 2 * p.addendum_mm * std::cos(p.pitch_angle_rad);
 }
 
@@ -106,7 +108,7 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_straight_bevel(const Wishes
   const auto& p = gear.parameters();
   const auto& w = gear.space().kernel();
   ChosenGear chosen;
-  chosen.diameter_mm = straight_bevel_diameter_mm(p);
+  chosen.diameter_mm = bevel_diameter_mm(p);
   chosen.facts = straight_bevel_facts(gear);
   const auto [front, back] = tooth_space::body_ends(gear.space(), gear.body());
   chosen.part = {0.5 * chosen.diameter_mm,
@@ -116,10 +118,6 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_straight_bevel(const Wishes
                  finger_places(w.R_i, w.R_e, p.pitch_angle_rad, p.dedendum_mm),
                  p.teeth};
   return chosen;
-}
-
-double bevel_diameter_mm(const bevel_gear::BevelGearParameters& p) {
-  return p.outer_transverse_module_mm * p.teeth + 2 * p.addendum_mm * std::cos(p.pitch_angle_rad);
 }
 
 Expected<ChosenGear, std::vector<Diagnostic>> choose_bevel(const Wishes& wishes) {
@@ -289,8 +287,7 @@ std::optional<double> least_swing_mm(const Wishes& wishes) {
   }
   for (const Quantity known : {Quantity::teeth, Quantity::mate_teeth, Quantity::module})
     if (!wishes[known]) return std::nullopt;
-  return straight ? straight_bevel_diameter_mm(straight_bevel_parameters(wishes))
-                  : bevel_diameter_mm(bevel_parameters(wishes));
+  return straight ? bevel_diameter_mm(straight_bevel_parameters(wishes)) : bevel_diameter_mm(bevel_parameters(wishes));
 }
 
 Status check_swing(const ChosenMachine& machine, double diameter_mm) {

@@ -65,8 +65,8 @@ struct ModifiedFlanks {
     tooth_space::ModifiedForm form;
   };
   std::vector<modification::Modification> list;
-  std::vector<Zone> zones;                             ///< those that are modified, of face gears
-  std::optional<bevel_gear::ModifiedForm> walls = {};  ///< of bevel gears
+  std::vector<Zone> zones;  ///< those that are modified, of gears that are milled on their tooth spaces
+  std::optional<bevel_gear::ModifiedForm> walls = {};  ///< of equal-base-circle bevel gears
   [[nodiscard]] double most_removed_mm() const;
 };
 

@@ -91,10 +91,13 @@ Result<process::Correction> ToothedProcess::answer(const job::MeasuredInput& mea
   job::GridOfGear grid;
   grid.zones = std::size_t(gear_.part->zones());
   grid.nominal = [&](int rows, int columns) { return inspection::inspection_grid(gear_.solid, {rows, columns}); };
+  std::vector<std::optional<tooth_space::FlankRectangle>> flanks_of_zones;
+  for (int zone = 0; zone < gear_.part->zones(); ++zone)
+    for (const int side : {1, -1})
+      flanks_of_zones.push_back(tooth_space::flank_rectangle(gear_.part->space(zone), side));
   grid.place = [&](const inspection::InspectionPoint& at) -> Vec2 {
-    const auto& space = gear_.part->space(at.zone);
-    const auto flank = tooth_space::flank_rectangle(space, at.side);
-    const Vec2 share = flank ? flank->share_at(space, at.p) : Vec2(NAN, NAN);
+    const auto& flank = flanks_of_zones[std::size_t(2 * at.zone + (at.side > 0 ? 0 : 1))];
+    const Vec2 share = flank ? flank->share_at(gear_.part->space(at.zone), at.p) : Vec2(NAN, NAN);
     return {share.x(), -share.y()};
   };
   grid.foot = -1;

@@ -6,19 +6,20 @@
 namespace toothpath::sections {
 namespace {
 
-std::string length_or_dash(double mm) { return std::isfinite(mm) ? fmt::format("{:.3f}", mm) : "none"; }
+std::string hollow_words(double radius_mm) {
+  return std::isfinite(radius_mm) ? fmt::format("hollow with radii of {:.3f} mm and more", radius_mm)
+                                  : "nowhere hollow";
+}
 
 /// What the modifications of a zone come to.
 std::string zone_words(const report::ModifiedFlanks::Zone& z) {
   const tooth_space::ModifiedForm& f = z.form;
   return fmt::format(
       "Zone {}: {:.2f} um are taken at most (flank {:+d}, r {:.3f} mm, z {:.3f} mm), normals turn by {:.2f} mrad; the "
-      "smallest hollow radius is {} mm on the flanks and {} mm in the fillets (plain: {}); the least top land is "
-      "{:.3f} "
-      "mm (plain: {:.3f}).",
+      "flanks are {}, the fillets {} (plain: {}); the least top land is {:.3f} mm (plain: {:.3f}).",
       z.zone, f.removed_mm.value * app::kUm, f.removed_mm.side, f.removed_mm.radius_mm, f.removed_mm.height_mm,
-      f.turned_rad.value * 1000, length_or_dash(f.hollow_flank.value), length_or_dash(f.hollow_fillet.value),
-      length_or_dash(f.plain_hollow_fillet_mm), f.land_mm.value, f.plain_land_mm);
+      f.turned_rad.value * 1000, hollow_words(f.hollow_flank.value), hollow_words(f.hollow_fillet.value),
+      hollow_words(f.plain_hollow_fillet_mm), f.land_mm.value, f.plain_land_mm);
 }
 
 /// What profile and path of a finger mill take.
