@@ -486,7 +486,7 @@ CommandOutcome run_new(const NewRequest& asked) {
 
 void new_options(OptionSet& set, NewRequest& request) {
   set.word("--gear", request.gear, "kind of gear", "KIND", proposal::gear_words());
-  set.word("--cut", request.route, "how it is cut; a bevel gear: finger", "WAY", proposal::route_words());
+  set.word("--cut", request.route, "how it is cut; bevel_herringbone: finger", "WAY", proposal::route_words());
   set.text("--machine", request.machine, "a machine file, or the name of an installed machine", "NAME");
   set.text("--tools", request.tools,
            "tools instead of standard sizes: those of a job, or of a tool library of LinuxCNC, Fusion or FreeCAD",
