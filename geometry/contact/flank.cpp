@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/contact/nearest_turn.h"
 #include "geometry/contact/tooth_contact.h"
 #include "geometry/face_gear/inverse.h"
 
@@ -71,6 +72,19 @@ std::optional<ToPinion> to_pinion(const Pinion<double>& pinion, const modificati
   if (!(found.radius_mm >= pinion.r_b) || !(found.radius_mm <= pinion.r_a)) return std::nullopt;
   if (field != nullptr) found.distance_mm += field->removal(pinion.r_a - found.radius_mm, found.Z_mm);
   return found;
+}
+
+double ContactMember::asked_turn(const Vec3& point, double /*phi_2*/) const {
+  const auto place = pinion.place(point);
+  if (!(place.radius >= pinion.r_b) || !(place.radius <= pinion.r_a)) return kNever;
+  const double plain = flank.side * pinion.turn_at(flank.side, place);
+  // Parallel involute helicoids are turned copies.
+  return on_pinion == nullptr ? plain
+                              : plain - set_back(pinion, *on_pinion, flank.side, place) / (pinion.r_b * pinion.cos_bb);
+}
+
+std::optional<ToPinion> ContactMember::approach(const Vec3& point, const Vec3&, double phi_2) const {
+  return to_pinion(pinion, on_pinion.get(), flank.side, pinion.place(point), phi_2 / pinion.ratio);
 }
 
 namespace {

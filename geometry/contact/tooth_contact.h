@@ -8,6 +8,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -33,6 +34,10 @@ struct ContactFlank {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
   }
   [[nodiscard]] bool exact() const;  ///< no deviation anywhere
+  [[nodiscard]] const std::vector<double>& u() const { return theta; }
+  [[nodiscard]] const std::vector<double>& v() const { return B; }
+  /// Radius and height of a place.
+  [[nodiscard]] static Vec2 meridian(const Vec3& p) { return {std::hypot(p.x(), p.y()), p.z()}; }
   /// The nominal flank at its parameters, modification and all.
   [[nodiscard]] face_gear::SurfacePointT<double> at(double theta_at, double B_at) const {
     return modified ? modified->flank(side, theta_at, B_at) : surface.flank(side, theta_at, B_at);
@@ -50,12 +55,34 @@ struct ContactFlank {
                                                   int columns, const std::vector<Vec3>& nominal,
                                                   const std::vector<double>& deviation_mm);
 
+struct ToPinion;
 /// A flank with the pinion that runs on it. Two rings of a double helical gear run with the two halves of one pinion.
 struct ContactMember {
   ContactFlank flank;
   Pinion<double> pinion;
   std::shared_ptr<const modification::Field> on_pinion = nullptr;  ///< its modification; null: plain flanks
   [[nodiscard]] bool modified() const { return flank.modified != nullptr || on_pinion != nullptr; }
+
+  // What rolling.h asks of it; places in the housing.
+  static constexpr bool kEvenLever = true;
+  [[nodiscard]] double pitch() const { return flank.surface.pitch; }
+  [[nodiscard]] double ratio() const { return pinion.ratio; }
+  [[nodiscard]] int teeth_of_mate() const { return pinion.teeth; }
+  /// Where the shaper cut the place.
+  [[nodiscard]] double near_turn(std::size_t k) const {
+    return flank.surface.i * flank.surface.flank_phi(flank.side, flank.theta[k], flank.B[k]);
+  }
+  [[nodiscard]] double inside_by(const Vec3& point) const {
+    const double radius = pinion.place(point).radius;
+    return std::min(pinion.r_a - radius, radius - pinion.r_b);
+  }
+  [[nodiscard]] double asked_turn(const Vec3& point, double phi_2 = 0) const;
+  [[nodiscard]] double lever_mm(const Vec3&, const Vec3&) const { return pinion.r_b * pinion.cos_bb; }
+  [[nodiscard]] Vec2 on_mate(const Vec3& point) const {
+    const auto place = pinion.place(point);
+    return {place.radius, place.Z};
+  }
+  [[nodiscard]] std::optional<ToPinion> approach(const Vec3& point, const Vec3&, double phi_2) const;
 };
 
 /// Depths and sections of a pinion over which its modifications are counted: from its tip cylinder down twice the
@@ -95,9 +122,10 @@ struct RollPosition {
   double phi_1 = 0, phi_2 = 0;  ///< turns, rad
   double error_rad = 0;         ///< phi_2 - phi_1 N_p/N_2
   int member = 0, tooth = 0;    ///< what touches: index of the member; pair, counted from the one at the pitch point
-  double radius_mm = 0, height_mm = 0;  ///< place of contact on the gear
+  double radius_mm = 0, height_mm = 0;  ///< place of contact on the gear: along the teeth and up
   int touching = 0;                     ///< teeth whose gap is below touch_mm (in any member)
   int marking = 0;                      ///< teeth whose gap is below the compound
+  void stand_at(const Vec2& meridian) { radius_mm = meridian.x(), height_mm = meridian.y(); }
 };
 
 /// What rolling leaves on one flank.
@@ -160,6 +188,7 @@ struct RollResult {
 /// flank.
 struct TouchPlace {
   double phi_1 = 0;
+  double lever_mm = 0;         ///< distance of the flanks a turn of the pinion
   double row = 0, column = 0;  ///< in the grid
   Vec3 point = Vec3::Zero();   ///< gear frame, tooth 0
 };

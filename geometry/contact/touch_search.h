@@ -1,5 +1,5 @@
-// The first touch of one flank with its pinion at one position of the gear: where on the flank, at which turn of the
-// pinion. Inside of tooth_contact; bevel_contact takes highest_place.
+// The first touch of one flank with its mate at one position of the gear: where on the flank, at which turn of the
+// mate. Inside of every roll; bevel_contact takes highest_place.
 #pragma once
 
 #include <algorithm>
@@ -11,22 +11,6 @@
 #include "geometry/contact/tooth_contact.h"
 
 namespace toothpath::contact {
-
-/// The pinion's turn, times the side, that a place of the gear asks for; never where the pinion has no involute.
-/// @param field  of the pinion; null: plain
-inline double asked_turn(const Pinion<double>& pinion, const modification::Field* field, int side, const Vec3& point) {
-  const auto place = pinion.place(point);
-  if (!(place.radius >= pinion.r_b) || !(place.radius <= pinion.r_a)) return kNever;
-  const double plain = side * pinion.turn_at(side, place);
-  // Parallel involute helicoids are turned copies.
-  return field == nullptr ? plain : plain - set_back(pinion, *field, side, place) / (pinion.r_b * pinion.cos_bb);
-}
-
-/// Has a place of the gear a place on the pinion's involute, whatever the turn?
-inline bool on_involute(const Pinion<double>& pinion, const Vec3& point) {
-  const double radius = pinion.place(point).radius;
-  return radius >= pinion.r_b && radius <= pinion.r_a;
-}
 
 /// Where f is highest between lo and hi, to 2e-7 of their distance; an end where f is higher there. Source: Brent 1973,
 /// Algorithms for Minimization without Derivatives, ch. 5: parabolas, golden section where they do not close in.
@@ -85,19 +69,15 @@ double last_inside(F&& f, double inside, double outside, double enough) {
 }
 
 /// The search for the first touch on one flank at one position of the gear: the highest asked turn over the grid and
-/// between its nodes.
+/// between its nodes. What the flank touches is the member's: a ContactMember or a ToothedMember.
+template <typename Member>
 class TouchSearch {
  public:
-  TouchSearch(const ContactMember& member, double phi_2)
-      : flank_(member.flank),
-        pinion_(member.pinion),
-        on_pinion_(member.on_pinion.get()),
-        turn_(phi_2),
-        exact_(member.flank.exact()) {
+  TouchSearch(const Member& member, double phi_2)
+      : member_(member), flank_(member.flank), phi_2_(phi_2), turn_(phi_2), exact_(member.flank.exact()) {
     nodes_.resize(flank_.points.size());
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
-      nodes_[k] = asked_turn(pinion_, on_pinion_, flank_.side,
-                             turn_(flank_.points[k] + flank_.deviation_mm[k] * flank_.normals[k]));
+      nodes_[k] = member.asked_turn(turn_(flank_.points[k] + flank_.deviation_mm[k] * flank_.normals[k]), phi_2);
       if (nodes_[k] > kNever) any_ = true;
     }
     for (int c = 0; c < flank_.columns; ++c) {
@@ -134,8 +114,9 @@ class TouchSearch {
     TouchPlace place;
     place.column = column;
     place.row = row_of(column, true);
-    place.point = point_at(place.row, column);
+    const Vec3 normal = place_at(place.row, column, place.point);
     place.phi_1 = flank_.side * value_at(place.row, column);
+    place.lever_mm = member_.lever_mm(turn_(place.point), turn_(normal));
     return place;
   }
 
@@ -166,13 +147,20 @@ class TouchSearch {
     return (1 - c.u) * ((1 - c.v) * f[c.k00] + c.v * f[c.k01]) + c.u * ((1 - c.v) * f[c.k10] + c.v * f[c.k11]);
   }
   /// Parameters are blended, so the point lies on the exact flank; its deviation is blended too.
-  [[nodiscard]] Vec3 point_at(double row, double column) const {
+  /// @returns the normal there
+  Vec3 place_at(double row, double column, Vec3& point) const {
     const Cell c = cell(row, column);
-    const auto p = flank_.at(blend(flank_.theta, c), blend(flank_.B, c));
-    return exact_ ? p.p : Vec3(p.p + blend(flank_.deviation_mm, c) * p.n);
+    const auto p = flank_.at(blend(flank_.u(), c), blend(flank_.v(), c));
+    point = exact_ ? p.p : Vec3(p.p + blend(flank_.deviation_mm, c) * p.n);
+    return p.n;
+  }
+  [[nodiscard]] Vec3 point_at(double row, double column) const {
+    Vec3 point;
+    (void)place_at(row, column, point);
+    return point;
   }
   [[nodiscard]] double value_at(double row, double column) const {
-    return row < 0 ? kNever : asked_turn(pinion_, on_pinion_, flank_.side, turn_(point_at(row, column)));
+    return row < 0 ? kNever : member_.asked_turn(turn_(point_at(row, column)), phi_2_);
   }
   /// Highest asked turn of a node column: the parabola through the best node and its neighbours, or the edge of the
   /// pinion's involute.
@@ -235,19 +223,18 @@ class TouchSearch {
     return row;
   }
   [[nodiscard]] bool on_pinion(double row, double column) const { return inside_by(row, column) >= 0; }
-  /// By how much the place lies inside the pinion's involute, mm of its radius; below 0 outside.
+  /// By how much the place lies inside the mate's flank, mm; below 0 outside.
   [[nodiscard]] double inside_by(double row, double column) const {
-    const double radius = pinion_.place(turn_(point_at(row, column))).radius;
-    return std::min(pinion_.r_a - radius, radius - pinion_.r_b);
+    return member_.inside_by(turn_(point_at(row, column)));
   }
   /// Row between `inside` and `outside` where the pinion's involute ends, on the inside, to 1e-12 mm or rows.
   [[nodiscard]] double edge(double column, double inside, double outside) const {
     return last_inside([&](double row) { return inside_by(row, column); }, inside, outside, 1e-12);
   }
 
-  const ContactFlank& flank_;
-  const Pinion<double>& pinion_;
-  const modification::Field* on_pinion_;
+  const Member& member_;
+  const decltype(Member::flank)& flank_;
+  double phi_2_;
   Turn turn_;
   bool exact_, any_ = false;
   std::vector<double> nodes_;

@@ -61,26 +61,29 @@ std::optional<PatchFoot> search_foot(const ToothSpace& space, Piece piece, const
   return {};
 }
 
-std::optional<EdgePlace> search_tip_edge(const ToothSpace& space, int side, double s, const Vec2& start,
-                                         const std::optional<EdgePlace>& near) {
-  const Outline& outline = space.outline();
-  const Chart& c = outline.chart;
+std::optional<PiecePlace> search_place(const ToothSpace& space, Piece piece, double s, double h, const Vec2& start) {
+  const Chart& c = space.outline().chart;
   Vec2 x = start;
   for (int k = 0; k < kSteps; ++k) {
-    const auto q = space.at(flank_of(side), x[0], x[1]);
+    const auto q = space.at(piece, x[0], x[1]);
     if (!q) return {};
-    const double lack_s = s - c.along(q->p), lack_h = space.tip(s) - c.up(q->p);
-    if (std::abs(lack_s) + std::abs(lack_h) < 1e-12 * q->p.norm()) {
-      // Of the flank's own tooth: the minus flank of the space belongs to the next one.
-      const double own = azimuth(turned(q->p, side > 0 ? 0.0 : -outline.pitch));
-      return EdgePlace{x[0], x[1], near ? near->azimuth + std::remainder(own - near->azimuth, kTwoPi) : own};
-    }
+    const double lack_s = s - c.along(q->p), lack_h = h - c.up(q->p);
+    if (std::abs(lack_s) + std::abs(lack_h) < 1e-12 * q->p.norm()) return PiecePlace{x[0], x[1], *q};
     const double su = c.along(q->p, q->pu), sv = c.along(q->p, q->pv), hu = c.up(q->p, q->pu), hv = c.up(q->p, q->pv),
                  det = su * hv - sv * hu;
     if (det == 0) return {};
     x += Vec2(lack_s * hv - sv * lack_h, su * lack_h - lack_s * hu) / det;
   }
   return {};
+}
+
+std::optional<EdgePlace> search_tip_edge(const ToothSpace& space, int side, double s, const Vec2& start,
+                                         const std::optional<EdgePlace>& near) {
+  const auto found = search_place(space, flank_of(side), s, space.tip(s), start);
+  if (!found) return {};
+  // Of the flank's own tooth: the minus flank of the space belongs to the next one.
+  const double own = azimuth(turned(found->at.p, side > 0 ? 0.0 : -space.outline().pitch));
+  return EdgePlace{found->u, found->v, near ? near->azimuth + std::remainder(own - near->azimuth, kTwoPi) : own};
 }
 
 }  // namespace toothpath::tooth_space

@@ -43,6 +43,14 @@ class ExactSpace : public ToothSpace {
 /// Newton for ToothSpace::foot. @param most  of u and v in one step
 [[nodiscard]] std::optional<PatchFoot> search_foot(const ToothSpace& space, Piece piece, const Vec3& c, double u,
                                                    double v, const Vec2& most);
+/// A place of a piece with its parameters.
+struct PiecePlace {
+  double u = 0, v = 0;
+  PatchPoint at;
+};
+/// Newton for the place of a piece at (s, h) of the chart. @param start  (u, v)
+[[nodiscard]] std::optional<PiecePlace> search_place(const ToothSpace& space, Piece piece, double s, double h,
+                                                     const Vec2& start);
 /// Newton for ToothSpace::tip_edge. @param start  (u, v)
 [[nodiscard]] std::optional<EdgePlace> search_tip_edge(const ToothSpace& space, int side, double s, const Vec2& start,
                                                        const std::optional<EdgePlace>& near);
