@@ -70,15 +70,19 @@ struct LineRecord {
   double contact_ratio = 1;  ///< way of the tip from the record before, over the way of the contact
 };
 
+/// By how much more may stand between the places where `left_mm` is looked at, as a factor.
+inline constexpr double kPlacesSee = 1.002;
+
 struct LinePass {
   int zone = 0, side = 1, strip = 0;
   std::vector<StationFigures> stations;  ///< those with a foot in the ring
   std::vector<LineRecord> records;
-  double misfit_mm = 0;   ///< worst of all stations and records, smoothing included, bias not
-  double left_mm = 0;     ///< largest gap as it is cut, looked at more densely (misfit.h): bias and blocks in it
-  double best_mm = 0;     ///< worst of the poses alone, over the full stations
-  double chord_mm = 0;    ///< worst seen within a block, as `PassOptions::chord_mm` counts
-  double contact_mm = 0;  ///< way of the contact
+  double misfit_mm = 0;  ///< worst of all stations and records, smoothing included, bias not
+  double left_mm = 0;  ///< most that stands as it is cut, looked at more densely (misfit.h): bias, blocks, lifts in it
+  double unpassed_mm = 0;  ///< planned to stand at ends of the ring that it does not reach
+  double best_mm = 0;      ///< worst of the poses alone, over the full stations
+  double chord_mm = 0;     ///< worst seen within a block, as `PassOptions::chord_mm` counts
+  double contact_mm = 0;   ///< way of the contact
   double contact_top_mm =
       0;  ///< highest height of a contact above the tip, along the axis, lifts included: the flutes must reach it
   double shortened_mm = 0;              ///< lost at ends that are not clear before the last foot has left the ring

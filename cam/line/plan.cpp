@@ -288,18 +288,14 @@ Result<LinePlan> plan_line_milling(const tooth_space::ToothedPart& part, const t
   }
   if (plan.passes.empty() && least == INFINITY && refused) return *refused;
   if (plan.passes.empty()) return fail("{}", missed(o, choices, best, least));
-  for (LinePass& pass : plan.passes) {
-    const auto flank = std::find_if(flanks.begin(), flanks.end(),
-                                    [&](const FlankTask& f) { return f.zone == pass.zone && f.side == pass.side; });
-    pass.left_mm =
-        largest_gap(LineFit(*flank, *tool.law(), strips_of(*flank, plan.strips)[std::size_t(pass.strip)]), pass);
-  }
+  const auto strips = std::size_t(plan.strips);
+  for (std::size_t k = 0; k < flanks.size(); ++k)
+    measure_left(flanks[k], tool, std::span(plan.passes).subspan(k * strips, strips));
   plan.path.operation = o.operation;
   plan.path.operation_type = "line_milling";
   plan.path.tool = o.tool;
   plan.path.spindle_rpm = o.speed_rpm;
   PathWriter writer(tool, o, kDip * (o.clearance_height_mm - part.blank_top()), plan.path);
-  const auto strips = std::size_t(plan.strips);
   for (const std::size_t flank : shortest_order(flanks, plan.passes, strips))
     for (std::size_t k = flank * strips; k < (flank + 1) * strips; ++k)
       writer.add(flanks[flank], plan.passes[k], int(k % (2 * strips)));

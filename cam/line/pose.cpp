@@ -37,12 +37,6 @@ double root_between(const F& g, double a, double ga, double b, double gb) {
 /// Where the foot at t is to be expected: on the line through two others.
 Place expected(const GapNode& a, const GapNode& b, double t) { return between(a.at, b.at, (t - a.t) / (b.t - a.t)); }
 
-/// Vertex of the parabola through three nodes, or the middle one where they do not bend.
-double vertex(const GapNode& a, const GapNode& b, const GapNode& c) {
-  const double d0 = (b.e - a.e) / (b.t - a.t), d1 = (c.e - b.e) / (c.t - b.t), bend = (d1 - d0) / (c.t - a.t);
-  return bend == 0 ? b.t : std::clamp(0.5 * (a.t + b.t - d0 / bend), a.t, c.t);
-}
-
 }  // namespace
 
 Vec3 FlankTask::up(const Vec3& p) const {
@@ -77,26 +71,25 @@ std::optional<FlankPlace> FlankTask::at_depth(double s, double asked) const {
   return {};
 }
 
-namespace {
-
-/// Where the flank meets the fillet at a station; nothing where its fillet line does not reach it.
-std::optional<tooth_space::PatchPoint> fillet_line(const FlankTask& t, double s) {
-  const auto edge = t.space->tip_edge(t.side, s);
+std::optional<tooth_space::PatchPoint> FlankTask::at_u(double s, double u) const {
+  const auto edge = space->tip_edge(side, s);
   const auto near = edge ? std::optional(tooth_space::Near{edge->v, s}) : std::nullopt;
   for (int attempt = 0; attempt < tooth_space::ToothSpace::kStarts; ++attempt) {
-    auto v = t.space->start_v(t.piece(), t.u_end, s, 0, near, attempt);
+    auto v = space->start_v(piece(), u, s, 0, near, attempt);
     bool arrived = false;
     for (int k = 0; v && k < kNewtonSteps; ++k) {
-      const auto q = t.space->at(t.piece(), t.u_end, *v);
+      const auto q = space->at(piece(), u, *v);
       if (!q) break;
       if (arrived) return q;
-      const double lack = s - t.along(q->p), most = t.space->longest_step(t.piece(), s);
-      arrived = std::abs(lack) < kLastStep * t.module_mm;
-      *v += std::clamp(lack / t.chart().along(q->p, q->pv), -most, most);
+      const double lack = s - along(q->p), most = space->longest_step(piece(), s);
+      arrived = std::abs(lack) < kLastStep * module_mm;
+      *v += std::clamp(lack / chart().along(q->p, q->pv), -most, most);
     }
   }
   return {};
 }
+
+namespace {
 
 /// Of the axis that the flank itself wants half way down it.
 bool wants_upright(const FlankTask& t) {
@@ -137,7 +130,7 @@ Result<FlankTask> flank_task(const tooth_space::ToothedPart& part, int zone, int
   const auto borders = t.space->borders(t.piece());
   t.u_end = side > 0 ? borders.to : borders.from;
   const double middle = 0.5 * (t.s_from + t.s_to);
-  const auto end = fillet_line(t, middle);
+  const auto end = t.at_u(middle, t.u_end);
   if (end) t.depth = t.depth_of(end->p);
   if (!(t.depth > 0))
     return fail("zone {}: flank {:+d} has no fillet line below the tips at {} {:.3f} mm", zone, side, outline.along,

@@ -64,6 +64,8 @@ struct FlankTask {
   [[nodiscard]] double above_fillet(double u) const { return (u - u_end) * mm_per_u; }
   /// The place at a station and a depth; nothing where the flank has none: beyond the undercut edge.
   [[nodiscard]] std::optional<FlankPlace> at_depth(double s, double depth) const;
+  /// The place at a station on a line of the flank that u names; nothing where that line does not reach it.
+  [[nodiscard]] std::optional<tooth_space::PatchPoint> at_u(double s, double u) const;
   [[nodiscard]] TangentFrame<double> frame(const tooth_space::PatchPoint& on) const {
     return tangent_frame<double>(side, on.n, up(on.p));
   }
@@ -102,6 +104,12 @@ struct GapNode {
   Place at;                 ///< likewise
   Vec3 n = Vec3::Zero();
 };
+
+/// Vertex of the parabola through three nodes, or the middle one where they do not bend.
+[[nodiscard]] inline double vertex(const GapNode& a, const GapNode& b, const GapNode& c) {
+  const double d0 = (b.e - a.e) / (b.t - a.t), d1 = (c.e - b.e) / (c.t - b.t), bend = (d1 - d0) / (c.t - a.t);
+  return bend == 0 ? b.t : std::clamp(0.5 * (a.t + b.t - d0 / bend), a.t, c.t);
+}
 
 /// The gap along an axis, over the feet that lie in the domain: the trimmed flank and a rim of `kRim` modules beyond
 /// the ends of the ring. The rim keeps the edges there whole: without it a pose could sink as soon as a foot has left

@@ -75,7 +75,10 @@ void add_side(const MilledGear& milled, std::size_t n, double bias_mm, Finished&
   const tool::ToolAssembly& tool = milled.tools[std::size_t(milled.plan.paths[n].tool)];
   out.side = n;
   out.lever_mm = std::max(out.lever_mm, contact_top(plan, tool));
-  out.misfit_planned_mm = kNodesSee * plan.misfit_mm + bias_mm + milled.plan.operations[n].chord_mm;
+  out.misfit_planned_mm =
+      line::kPlacesSee * (kNodesSee * plan.misfit_mm + bias_mm + milled.plan.operations[n].chord_mm);
+  for (const line::LinePass& pass : plan.passes)
+    out.misfit_planned_mm = std::max(out.misfit_planned_mm, line::kPlacesSee * pass.unpassed_mm);
   out.misfit_mm = plan.left_mm();
   out.chord_planned_mm = std::max(out.chord_planned_mm, milled.operations[n].chord_tolerance_mm);
   out.chord_mm = std::max(out.chord_mm, milled.plan.operations[n].chord_mm);
@@ -151,8 +154,8 @@ std::vector<proof::LedgerEntry> ledger(const MilledGear& milled, const joints::A
                                "middles of the blocks between touching records"));
   if (f.side)
     out.push_back(process::entry(proof::ErrorSource::line_misfit, f.misfit_planned_mm, f.misfit_mm,
-                                 "gap of the side at all records, 64 heights each, and between them; smoothing, bias "
-                                 "and chord in it"));
+                                 "what stands along the normals, at records, between them and at borders; smoothing, "
+                                 "bias and chord in it"));
   const bool asked = scallop.requested_mm > 0;
   if (f.balls)
     out.push_back(process::entry(proof::ErrorSource::scallop, f.scallop_mm,

@@ -222,6 +222,8 @@ TEST(Involute, PassesByBruteForce) {
       std::printf("z %d, %d strips, side %+d: swept left %.2f um, gouge %.3f um, planned %.2f um\n", gear.teeth, strips,
                   side, 1e3 * left, 1e3 * gouge, 1e3 * plan->misfit_mm);
       EXPECT_LT(left, plan->misfit_mm + chord + o.bias_mm + 1e-4);
+      EXPECT_LT(left, plan->left_mm());
+      EXPECT_GT(left, 0.96 * plan->left_mm());
       EXPECT_LT(gouge, -o.bias_mm + 0.25 * chord + 5e-5);
     }
     o.left_mm = 2e-5;

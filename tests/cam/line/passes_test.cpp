@@ -400,6 +400,52 @@ TEST(LinePlans, AllowanceStandsParallel) {
   }
 }
 
+/// What stands along the normals of a flank after all passes, above the allowance: from its places outwards until the
+/// mill has been there.
+double standing(const line::FlankTask& f, const BruteConicalMill& mill, const std::vector<BrutePose>& way, int columns,
+                int rows) {
+  double most = 0;
+  for (int i = 0; i <= columns; ++i)
+    for (int j = 0; j <= rows; ++j) {
+      const double s = f.s_from + (f.s_to - f.s_from) * i / columns, u = f.space->tip_edge(f.side, s)->u;
+      const auto on = f.at_u(s, u + (f.u_end - u) * j / rows);
+      double h = most;
+      for (double step = 1; step > 1e-8; h += std::max(step, 0.0))
+        step = least_distance(on->p + (f.allowance_mm + h) * on->n, mill, way);
+      most = h;
+    }
+  return most;
+}
+
+// The number of an operation is what stands where it stands highest: at the fillet line under a ball end that is
+// lifted, in a corner of the ring, between two records.
+TEST(LinePlans, WhatIsLeftBoundsWhatStandsAlongTheNormal) {
+  auto gear = small_spur();
+  gear.zones[0].outer_radius_mm = 62;
+  const auto& part = kept(made(gear));
+  const double r_0 = 0.4;
+  for (const auto& [allowance, chord, factor] : {std::tuple(0.05, 0.005, 1.5), {0.0, 0.001, 1.0}}) {
+    auto o = finishing();
+    o.clearance_height_mm = part.blank_top() + 1;
+    o.allowance_mm = allowance;
+    o.left_mm = 0.006;
+    o.chord_tolerance_mm = chord;
+    if (allowance > 0) o.base_lift_mm = std::sqrt(r_0 * chord);
+    const auto plan = line::plan_line_milling(part, mill(2 * r_0, 5, 8, 4, 22), o);
+    ASSERT_TRUE(plan) << plan.error().message;
+    const auto& pass = plan->passes[0];
+    std::vector<BrutePose> way;
+    for (const auto& r : pass.records) way.push_back({r.axis.c_0 - r_0 * r.axis.a, r.axis.a});
+    const double stands =
+        standing(*line::flank_task(part, 0, pass.side, allowance), {r_0, radians(5), 0, 0}, way, 40, 20);
+    std::printf("allowance %.2f mm: %.3f um stand along the normal, told %.3f um, planned %.3f um\n", allowance,
+                1e3 * stands, 1e3 * plan->left_mm(), 1e3 * plan->misfit_mm);
+    EXPECT_GE(pass.left_mm, stands);
+    EXPECT_LE(pass.left_mm, 1.01 * stands);
+    EXPECT_GE(stands, factor * plan->misfit_mm);
+  }
+}
+
 TEST(LinePlans, ChoosesFewestRotariesThenFewestStrips) {
   const auto gear = made(quarter_dhfg());
   const auto tool = mill(0.5, 5, 4, 4, 22);
