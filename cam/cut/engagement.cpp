@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "geometry/base/angle.h"
@@ -139,6 +140,7 @@ class OverloadAlong {
         chart_(q.chart),
         rings_(rings_of(q.mill.cutting(), kLoadRings)),
         radius_(q.mill.cutting().largest_radius()),
+        asks_more_(asked.step_down_mm > 0 || asked.stock_mm < INFINITY),
         stock_(motions, q) {
     std::sort(rings_.begin(), rings_.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
   }
@@ -176,6 +178,7 @@ class OverloadAlong {
     const double way = (m.tip_to - m.tip_from).norm();
     if (way == 0) return most;
     const double quick = m.minutes > 0 ? way / m.minutes / asked_.feed_mm_min : INFINITY;
+    if (quick <= kLoadFactor && !asks_more_) return most;  // no chip is larger than the feed
     const int places = std::max(1, int(std::ceil(way / (kLoadPlaces * radius_))));
     for (int k = 0; k < places; ++k)
       for (const Edge& e : edges(m, (k + 0.5) / places)) look(e, quick, done, most);
@@ -187,11 +190,14 @@ class OverloadAlong {
     const Vec3 u = across.norm() > kAlongAxis ? Vec3(across.normalized()) : Vec3(axis.unitOrthogonal());
     const Vec3 v = axis.cross(u);
     const double low = lowest(tip, axis);
+    std::array<Vec3, 2 * kLoadDirections + 1> about_feed;
+    for (int k = -kLoadDirections; k <= kLoadDirections; ++k) {
+      const double a = k * kHalfChip / kLoadDirections;
+      about_feed[std::size_t(k + kLoadDirections)] = std::cos(a) * u + std::sin(a) * v;
+    }
     std::vector<Edge> out;
     for (const PointRing& ring : rings_)
-      for (int k = -kLoadDirections; k <= kLoadDirections; ++k) {
-        const double a = k * kHalfChip / kLoadDirections;
-        const Vec3 n = std::cos(a) * u + std::sin(a) * v;
+      for (const Vec3& n : about_feed) {
         const double share = (ring.normal_out * n + ring.normal_up * axis).dot(feed);
         if (share < kLeastShare) continue;
         const Vec3 at = tip + ring.height * axis + ring.radius * n;
@@ -239,6 +245,7 @@ class OverloadAlong {
   tooth_space::Chart chart_;
   std::vector<PointRing> rings_;
   double radius_;
+  bool asks_more_;  ///< than about chips
   Stock stock_;
 };
 

@@ -11,9 +11,11 @@ struct HalfPlane {
   double distance = 0, d_rho = 0, d_h = 0;
 };
 inline HalfPlane half_plane(double rho, double h, const Frustum& f) {
+  const double below = f.from - h, above = h - f.to;
+  if (below > 0 && rho <= f.radius_from) return {below, 0, -1};
+  if (above > 0 && rho <= f.radius_to) return {above, 0, 1};
   const double dr = f.radius_to - f.radius_from, dh = f.to - f.from;
   const double side = (rho - f.radius_from) * dh - (h - f.from) * dr;  // times the length of the generator
-  const double below = f.from - h, above = h - f.to;
   const auto inside = [&]() -> HalfPlane {
     const double slant = std::sqrt(dr * dr + dh * dh);
     if (side >= below * slant && side >= above * slant) return {side / slant, dh / slant, -dr / slant};
