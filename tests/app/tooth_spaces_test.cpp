@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
-#include <stdexcept>
 
 #include "app/commands/check.h"
 #include "app/commands/run.h"
+#include "tests/app/judged.h"
 #include "tests/support/files.h"
 #include "tests/support/threads.h"
 
@@ -33,39 +33,32 @@ class Made {
     const std::string machine = file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml");
     write_file(dir_ / "machine.toml", machine + "\n[post]\n" + post + "\n");
     std::string job = file_text(TOOTHPATH_SOURCE_DIR "/samples/spur_quick.toml");
-    const auto put = [&](const std::string& from, const std::string& to) {
-      const auto at = job.find(from);
-      if (at == std::string::npos) throw std::runtime_error(from);
-      job.replace(at, from.size(), to);
-    };
-    put("\"xyzac_large.toml\"", "\"machine.toml\"\naccept_assumed = true");
-    put("[3.0, -2.0, 120.0]", "[" + place + ", 120.0]");
-    put("[3.0, -2.0, 0.0]", "[" + place + ", 0.0]");
-    write_file(dir_ / "job.toml", job);
-    commands::RunRequest request;
-    request.job_file = dir_ / "job.toml";
-    request.out_dir = dir_ / "out";
-    request.quiet = true;
-    EXPECT_EQ(commands::run_job(request).exit_code, app::ExitCode::ok);
-    std::istringstream in(file_text(dir_ / "out/program.ngc"));
-    for (std::string line; std::getline(in, line);) lines_.push_back(line);
+    replace_once(job, "\"xyzac_large.toml\"", "\"machine.toml\"\naccept_assumed = true");
+    replace_once(job, "[3.0, -2.0, 120.0]", "[" + place + ", 120.0]");
+    replace_once(job, "[3.0, -2.0, 0.0]", "[" + place + ", 0.0]");
+    run(job);
   }
+  /// Any job, on the machine that it names.
+  explicit Made(const std::string& job) { run(job); }
   [[nodiscard]] const Lines& lines() const { return lines_; }
+  /// What `check` says of a text; the job is read and planned once for all of them.
   [[nodiscard]] Verdict check(const Lines& lines) const {
+    if (!checker_) {
+      commands::CheckRequest request;
+      request.job_file = dir_ / "job.toml";
+      request.quiet = true;
+      checker_ = std::make_unique<commands::ProgramChecker>(request);
+      const auto errors = checker_->read();
+      EXPECT_TRUE(errors.empty()) << to_text(errors);
+    }
     std::string text;
     for (const std::string& line : lines) text += line + "\n";
-    write_file(dir_ / "edited.ngc", text);
-    commands::CheckRequest request;
-    request.job_file = dir_ / "job.toml";
-    request.program_file = dir_ / "edited.ngc";
-    request.out_dir = dir_ / "check";
-    request.quiet = true;
-    const auto outcome = commands::check_program(request);
-    EXPECT_FALSE(outcome.report_json.empty()) << to_text(outcome.errors);
-    if (outcome.report_json.empty()) return {};
-    const auto report = nlohmann::json::parse(outcome.report_json);
-    Verdict out{report["verified"].get<bool>(), "", NAN};
-    for (const auto& reason : report["reasons"]) out.reasons += reason.get<std::string>() + "\n";
+    const auto proven = checker_->prove(text, dir_ / "edited.ngc");
+    EXPECT_TRUE(proven) << to_text({proven.error()});
+    if (!proven) return {};
+    Verdict out{proven->verified, "", NAN};
+    for (const auto& reason : proven->reasons) out.reasons += reason + "\n";
+    const auto report = nlohmann::json::parse(report::report_json(*proven));
     if (report.contains("excess_um")) out.left_um = report["excess_um"]["finished"]["max"].get<double>();
     return out;
   }
@@ -77,8 +70,20 @@ class Made {
   }
 
  private:
+  void run(const std::string& job) {
+    write_file(dir_ / "job.toml", job);
+    commands::RunRequest request;
+    request.job_file = dir_ / "job.toml";
+    request.out_dir = dir_ / "out";
+    request.quiet = true;
+    EXPECT_EQ(commands::run_job(request).exit_code, app::ExitCode::ok);
+    std::istringstream in(file_text(dir_ / "out/program.ngc"));
+    for (std::string line; std::getline(in, line);) lines_.push_back(line);
+  }
+
   TestDir dir_;
   Lines lines_;
+  mutable std::unique_ptr<commands::ProgramChecker> checker_;
 };
 
 class ToothSpaces : public testing::TestWithParam<const char*> {
@@ -279,22 +284,62 @@ TEST_F(LoopsThatDiffer, AndWhatIsMissingIsFound) {
   expect_told(made().check(indexed("0-#1*2*360.0001/60", {1})), {"operation 1 does not cut tooth 1, 3, 5"});
 }
 
+/// The passes of the first operation, a sub-program: runs of lines that go across, [first, last).
+std::vector<std::pair<std::ptrdiff_t, std::ptrdiff_t>> roughing_passes(const Lines& lines) {
+  const auto cut = [](const std::string& line) { return line.starts_with("X") || line.starts_with("Y"); };
+  const auto end = std::find(lines.begin(), lines.end(), "o100 endsub");
+  std::vector<std::pair<std::ptrdiff_t, std::ptrdiff_t>> out;
+  for (auto at = lines.begin(); at != end;) {
+    const auto first = std::find_if(at, end, cut);
+    at = std::find_if_not(first, end, cut);
+    if (at - first > 2) out.emplace_back(first - lines.begin(), at - lines.begin());
+  }
+  return out;
+}
+
 // A roughing pass is dropped: nothing is gouged, the finished surface is right, the tool runs through what stands.
 TEST(PassesThatAreMissing, AreFoundByTheirLoad) {
   const Made& made = Made::of("3.0, -2.0", "index_loop = true");
-  const auto cut = [](const std::string& line) { return line.starts_with("X"); };
-  for (const int pass : {0, 2}) {
+  const auto passes = roughing_passes(made.lines());
+  for (const std::size_t pass : {0, 1}) {
     Lines lines = made.lines();
-    auto first = std::find(lines.begin(), lines.end(), "o100 sub");
-    for (int k = 0; k <= pass; ++k) {
-      if (k > 0) first = std::find_if_not(first, lines.end(), cut);
-      first = std::find_if(first, lines.end(), cut);
-    }
-    lines.erase(first, std::find_if_not(first, lines.end(), cut));
+    const auto [first, last] = passes.at(pass);
+    lines.erase(lines.begin() + first, lines.begin() + last);
     const Verdict found = made.check(lines);
     expect_told(found, {"operation 0: at line [0-9]+ .* with a chip of [0-9.]+ times the feed"});
     EXPECT_EQ(found.reasons.find("left material"), std::string::npos) << found.reasons;
   }
+}
+
+// The finger mill that finishes a bevel gear goes into the full space where the only roughing pass of a half is
+// missing: the walls come out right, and no ridge is left. What it should meet tells a plan made anew.
+TEST(PassesThatAreMissing, OfABevelGearAreFoundByTheEngagement) {
+  const Made made(file_text(TOOTHPATH_SOURCE_DIR "/samples/bevel_pinion.toml"));
+  const Verdict whole = made.check(made.lines());
+  EXPECT_TRUE(whole.verified) << whole.reasons;
+  Lines lines = made.lines();
+  const auto [first, last] = roughing_passes(lines).at(3);
+  lines.erase(lines.begin() + first, lines.begin() + last);
+  expect_told(made.check(lines),
+              {"operation 1: at line [0-9]+ its teeth are in the material over 180 deg, in a plan of this job over"});
+}
+
+// A ball that is smaller than the one before it: nothing but a plan tells what it meets. Six passes are missing, with
+// the ways to them, and what roughs meets no more than its layers.
+TEST(PassesThatAreMissing, AheadOfASmallerBallAreFoundByTheStock) {
+  std::string job = file_text(TOOTHPATH_SOURCE_DIR "/samples/spur_quick.toml");
+  replace_once(job, "[[operation]]\ntype = \"finishing\"\ntool = 1",
+               "[[tool]]\nnumber = 2\ntype = \"ball_end_mill\"\ndiameter = 0.8\nflute_length = 6.0\n"
+               "shank_diameter = 0.75\nlength = 80.0\nholder = [[10.0, 10.0, 40.0]]\nstick_out = 16.0\n\n"
+               "[[operation]]\ntype = \"finishing\"\ntool = 2");
+  const Made made(job);
+  const Verdict whole = made.check(made.lines());
+  EXPECT_TRUE(whole.verified) << whole.reasons;
+  Lines lines = made.lines();
+  const auto passes = roughing_passes(lines);
+  lines.erase(lines.begin() + passes.at(27).second + 1, lines.begin() + passes.at(33).second + 1);
+  const Verdict found = made.check(lines);
+  expect_told(found, {"^operation 1: at line [0-9]+ the chip lies [0-9.]+ mm or more below what was free"});
 }
 
 // Every tooth is proven, beside the first one: sixty of them cost a few times what one costs.

@@ -41,14 +41,22 @@ class FingerMilling final : public process::GearMilling {
         gear_(gear),
         limits_(limits),
         gouge_(gear, job.tools, job.operations, limits, check_options(grid)),
-        check_(job, machine, limits, gear, gouge_) {}
+        check_(job, machine, limits, gear, gouge_) {
+    check_.plan_anew = process::planned_once([this]() -> process::PlannedMotions {
+      std::vector<path::ToolMotion> motions;
+      for (std::size_t n = 0; n < job_.operations.size(); ++n) {
+        const auto plan = plan_of(n);
+        if (!plan) return plan.error();
+        const auto own = path::motions_of(plan->path);
+        motions.insert(motions.end(), own.begin(), own.end());
+      }
+      return motions;
+    });
+  }
 
   [[nodiscard]] Status plan(app::StageClock& clock, app::Progress&) override {
     for (std::size_t i = 0; i < job_.operations.size(); ++i) {
-      const auto& operation = job_.operations[i];
-      const auto& tool = job_.tools[static_cast<std::size_t>(operation.tool)];
-      auto plan = clock.run(
-          "plan", [&] { return finger::plan_finger_operation(gear_, tool, operation, static_cast<int>(i), limits_); });
+      auto plan = clock.run("plan", [&] { return plan_of(i); });
       if (!plan) return process::located(job_, fmt::format("operation[{}]", i), plan.error());
       plans_.push_back(std::move(plan).value());
     }
@@ -100,6 +108,11 @@ class FingerMilling final : public process::GearMilling {
   [[nodiscard]] sheet::OtherSurface beside_the_grid() const override { return {kRootShare}; }
 
  private:
+  [[nodiscard]] Result<finger::FingerPlan> plan_of(std::size_t n) const {
+    const auto& operation = job_.operations[n];
+    return finger::plan_finger_operation(gear_, job_.tools[std::size_t(operation.tool)], operation, int(n), limits_);
+  }
+
   const job::Job& job_;
   const bevel_gear::BevelGear& gear_;
   proof::ProofLimits limits_;

@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "app/base/units.h"
+#include "cam/finger/finger_profile.h"
+#include "cam/finger/milling.h"
 #include "cam/finger/teeth.h"
 #include "geometry/base/angle.h"
 
@@ -21,6 +23,18 @@ constexpr double kFingerMotionTolerance = 5e-5;
 constexpr double kRoundedLinear =
     2.5e-3;                          // mm and deg: an axis that changes less stands still (words of three decimals)
 constexpr double kAlongAxis = 0.05;  // a move with less across the axis, as a share, is an engage or retract
+
+constexpr double kLoadSag = 0.05;  // mm: the mill as a load asks for it
+
+/// The turned blank: two halves, a groove between them.
+bool in_blank(const bevel_gear::BevelGear& gear, const Vec3& p) {
+  const auto at = bevel_gear::cone_point(p, gear.sin_delta(), gear.cos_delta());
+  if (at.height > gear.parameters().addendum_mm || at.ell < gear.R_i() || at.ell > gear.R_e()) return false;
+  return at.height < -gear.parameters().dedendum_mm ||
+         std::any_of(gear.halves().begin(), gear.halves().end(), [&](const bevel_gear::BevelHalf& half) {
+           return at.ell >= half.ell_from && at.ell <= half.ell_to;
+         });
+}
 
 std::string told(const proof::WorstPlace& p) {
   return fmt::format("{} against {}, operation {}, tooth {}, line {}, r {:.3f} mm, z {:.3f} mm", p.body, p.patch,
@@ -204,6 +218,23 @@ bool BevelGearCheck::may_cut(const path::ToolMotion& motion) const { return chec
 
 bool BevelGearCheck::measures(int operation) const { return finisher(job_) == std::size_t(operation); }
 
+/// No job asks for the stock that the walls keep: a plan tells it.
+process::LoadJudge BevelGearCheck::load_judge() const {
+  process::LoadQuery query{.job = job_,
+                           .in_blank = [this](const Vec3& p) { return in_blank(gear_, p); },
+                           .top_mm = INFINITY,
+                           .chart = {-gear_.sin_delta(), gear_.cos_delta()}};
+  for (const path::MillingOperation& op : job_.operations) {
+    const tool::ToolAssembly& tool = job_.tools[std::size_t(op.tool)];
+    const auto own = finger::gear_for_finger_mill(gear_, tool);
+    query.mills.push_back(finger::finger_profile((own ? *own : gear_).cutter(), tool, kLoadSag));
+    query.bodies.push_back(tool::proof_tool(query.mills.back(), tool.number, kLoadSag));
+    query.stock_before_mm.push_back(INFINITY);
+  }
+  query.plan = plan_anew;
+  return process::LoadJudge(std::move(query));
+}
+
 /// Before copies go: the joints of turned teeth differ where the gear is off the axis of its rotary.
 void BevelGearCheck::meet(const readback::OperationTrace& trace, std::span<const path::ToolMotion> motions,
                           const readback::NcControl& control) {
@@ -224,6 +255,13 @@ void BevelGearCheck::judge(process::ProgramProof& program, app::StageClock& cloc
     for (const process::ToothCut& other : program.other_teeth)
       if (other.again.missing && !other.cuts_nothing() && measures(other.operation))
         program.reasons.push_back(told(other));
+  if (program.others_text)
+    clock.run("engagement", [&] {
+      const std::vector<path::ToolMotion> firsts = process::first_in_space_0(program.motions, teeth());
+      const process::LoadJudge load = load_judge();
+      load.judge(firsts, program.reasons);
+      load.judge_by_plan(firsts, program.reasons, program.warnings);
+    });
   program.gouge = result.gouge;
   program.excess = result.operations;
   if (finisher(job_)) program.finished = result.finished;

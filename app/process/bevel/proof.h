@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/process/load_judge.h"
 #include "app/process/program_proof.h"
 #include "cam/finger/check.h"
 #include "cam/proof/limits.h"
@@ -41,9 +42,12 @@ class BevelGearCheck final : public process::GearCheck {
   /// What was met of a program that is not judged.
   void forget() { moving_ = {}; }
 
+  process::PlanAnew plan_anew;       ///< what a text of others is held against
   finger::FingerCheckResult result;  ///< of the program judged last, for the ledger; its grids stand in the proof
 
  private:
+  [[nodiscard]] process::LoadJudge load_judge() const;
+
   const job::Job& job_;
   const machines::Machine& machine_;
   proof::ProofLimits limits_;

@@ -82,7 +82,18 @@ Milling::Milling(const job::Job& job, const machines::Machine& machine, analytic
       part_(std::move(part)),
       body_(std::move(body)),
       gouge_(part_, job.tools, {limits, part_.part().blank_top()}),
-      check_(job, machine, limits, part_, body_, gouge_, surface_options(grid)) {}
+      check_(job, machine, limits, part_, body_, gouge_, surface_options(grid)) {
+  check_.plan_anew = process::planned_once([this]() -> process::PlannedMotions {
+    auto planned = plan::plan_milling(part_, job_.tools, job_.operations, options_);
+    if (auto* refusal = planned.refused()) return std::move(refusal->diagnostic);
+    std::vector<path::ToolMotion> motions;
+    for (const path::ClPath& path : planned.value().paths) {
+      const auto own = analytic::GougeCheck::motions_of(path);
+      motions.insert(motions.end(), own.begin(), own.end());
+    }
+    return motions;
+  });
+}
 
 /// Modifications that bend a flank or a fillet so hollow that the ball of an operation no longer fits, where it would
 /// fit the plain one.

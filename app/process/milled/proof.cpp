@@ -8,8 +8,7 @@
 #include "app/base/units.h"
 #include "app/process/milled/unreached.h"
 #include "app/process/proof_limits.h"
-#include "cam/cut/engagement.h"
-#include "cam/plan/milling.h"
+#include "cam/ball/plan.h"
 #include "cam/proof/rapid_clearance.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
@@ -149,26 +148,6 @@ void judge_surface(const cut::CutSurface& surface, const job::Job& job, const pr
   judge_finished(surface, job, limits, reasons);
 }
 
-/// Motions turned to tooth space 0.
-std::vector<path::ToolMotion> in_space_0(std::vector<path::ToolMotion> motions, int teeth) {
-  for (path::ToolMotion& m : motions) {
-    if (m.tooth == 0) continue;
-    const Mat3 back = Eigen::AngleAxisd(-2 * kPi * m.tooth / teeth, Vec3::UnitZ()).toRotationMatrix();
-    for (Vec3* v : {&m.tip_from, &m.tip_to, &m.axis_from, &m.axis_to}) *v = back * *v;
-    m.tooth = 0;
-  }
-  return motions;
-}
-
-/// The first tooth of every operation, as if it were tooth 0.
-std::vector<path::ToolMotion> first_in_space_0(const std::vector<path::ToolMotion>& motions, int teeth) {
-  const std::map<int, int> first = process::first_teeth(motions);
-  std::vector<path::ToolMotion> own;
-  for (const path::ToolMotion& m : motions)
-    if (const auto found = first.find(m.operation); found != first.end() && found->second == m.tooth) own.push_back(m);
-  return in_space_0(std::move(own), teeth);
-}
-
 /// How far above the tip a mill cuts, mm: by as much a turned axis moves what it removes.
 double reach_of(const tool::ProofTool& tool) {
   if (tool.ball_mill) return tool.ball_mill->radius_mm();  // what it removes is told by its centre
@@ -294,7 +273,7 @@ class MilledCheck::OtherTeeth {
       if (!m.rapid && near_.contains(m.tooth) && check_.measures(m.operation))
         cuts[{m.tooth, m.operation}].push_back(m);
     for (auto& [key, own] : cuts)
-      near_.at(key.first).add(in_space_0(std::move(own), check_.teeth()), check_.tool_of(key.second),
+      near_.at(key.first).add(process::in_space_0(std::move(own), check_.teeth()), check_.tool_of(key.second),
                               check_.part_.part().highest_z());
   }
   /// Those with cuts that the first tooth does not have: what they take off is not what it takes off there.
@@ -346,7 +325,7 @@ void MilledCheck::judge_unlike(process::ProgramProof& program, const OtherTeeth&
   for (const auto& [tooth, why] : unlike) teeth.insert(tooth);
   std::size_t refused = 0;
   for (auto& [tooth, cuts] : cuts_of(program, teeth)) {
-    cut::CutSurface own = meter_.measure(in_space_0(std::move(cuts), this->teeth()), 0);
+    cut::CutSurface own = meter_.measure(process::in_space_0(std::move(cuts), this->teeth()), 0);
     std::vector<std::string> reasons;
     judge_surface(own, job_, limits_, reasons);
     judge_unreached(own.unreached, job_.verify.unreached_mm, reasons);
@@ -360,56 +339,32 @@ void MilledCheck::judge_unlike(process::ProgramProof& program, const OtherTeeth&
   if (refused > kTeethTold) program.reasons.push_back(fmt::format("so it is with {} more teeth", refused - kTeethTold));
 }
 
-/// What an operation takes off at a time, in what those before it leave: nobody who wrote the text by hand sees that.
-void MilledCheck::judge_load(std::span<const path::ToolMotion> one_space, std::vector<std::string>& reasons) const {
-  const readback::AskedConditions asked = process::asked_conditions(job_);
-  std::vector<std::unique_ptr<cut::Removed>> removed;
-  std::vector<const cut::Removed*> before;
+/// By what the job asks, and where that says nothing of the stock by a plan made anew.
+process::LoadJudge MilledCheck::load_judge() const {
+  process::LoadQuery query{.job = job_,
+                           .in_blank = [&](const Vec3& p) { return part_.part().in_blank(p); },
+                           .top_mm = part_.part().highest_z(),
+                           .chart = part_.part().chart()};
+  bool side = false;  // plans of line milling take long
   for (std::size_t n = 0; n < job_.operations.size(); ++n) {
-    const path::MillingOperation& op = job_.operations[n];
-    const tool::ToolAssembly& tool = job_.tools[std::size_t(op.tool)];
-    std::vector<path::ToolMotion> motions;
-    for (const path::ToolMotion& m : one_space)
-      if (m.operation == int(n)) motions.push_back(m);
-    if (motions.empty()) return;  // told elsewhere; what the next ones meet is not known
-    const tool::Profile mill = tool::profile_of(tool);
-    const cut::EngagementQuery stock{mill,
-                                     tool_of(int(n)).cutting,
-                                     before,
-                                     [&](const Vec3& p) { return part_.part().in_blank(p); },
-                                     part_.part().highest_z(),
-                                     1,
-                                     part_.part().chart()};
-    const cut::Overload load = cut::overload_along(
-        motions, stock,
-        {asked.operations[n].feed_mm_min, op.step_down_mm, ball::stock_before(job_.operations, job_.tools, n)});
-    if (load.chip_share > 0)
-      reasons.push_back(fmt::format(
-          "operation {}: at line {} the tool runs through what stands there with a chip of {:.2f} times the feed per "
-          "tooth that the job asks, limit {:.1f} times: a cut ahead of it is missing, or the feed is too quick",
-          n, load.chip_line, load.chip_share, cut::kLoadFactor));
-    if (load.depth_mm > 0)
-      reasons.push_back(
-          fmt::format("operation {}: at line {} the chip reaches {:.3f} mm or more above the lowest place of the mill, "
-                      "step_down = {:g} mm, "
-                      "limit {:.1f} times that: a cut of the layer above is missing",
-                      n, load.depth_line, load.depth_mm, op.step_down_mm, cut::kLoadFactor));
-    if (load.stock_mm > 0)
-      reasons.push_back(fmt::format(
-          "operation {}: at line {} the chip lies {:.3f} mm or more below what was free before, the operations ahead "
-          "leave {:.3f} mm, limit {:.1f} times that: a cut of theirs is missing",
-          n, load.stock_line, load.stock_mm, ball::stock_before(job_.operations, job_.tools, n), cut::kLoadFactor));
-    removed.push_back(std::make_unique<cut::Removed>(std::move(motions), tool_of(int(n)), part_.part().highest_z()));
-    before.push_back(removed.back().get());
+    query.mills.push_back(tool::profile_of(job_.tools[std::size_t(job_.operations[n].tool)]));
+    query.bodies.push_back(tool_of(int(n)));
+    query.stock_before_mm.push_back(ball::stock_before(job_.operations, job_.tools, n));
+    side = side || job_.operations[n].type == path::OperationType::line_milling;
   }
+  if (!side) query.plan = plan_anew;
+  return process::LoadJudge(std::move(query));
 }
 
-void MilledCheck::judge_other_loads(process::ProgramProof& program, const std::set<int>& teeth) const {
+void MilledCheck::judge_other_loads(process::ProgramProof& program, const process::LoadJudge& judge,
+                                    const std::set<int>& teeth) const {
   std::size_t refused = 0;
   for (auto& [tooth, cuts] : cuts_of(program, teeth)) {
     if (refused > kTeethTold) break;  // it is not verified at any rate
     std::vector<std::string> reasons;
-    judge_load(in_space_0(std::move(cuts), this->teeth()), reasons);
+    const std::vector<path::ToolMotion> own = process::in_space_0(std::move(cuts), this->teeth());
+    judge.judge(own, reasons);
+    if (program.reasons.empty()) judge.judge_by_plan(own, reasons, program.warnings);
     if (!reasons.empty() && ++refused <= kTeethTold)
       for (const std::string& reason : reasons) program.reasons.push_back(fmt::format("tooth {}: {}", tooth, reason));
   }
@@ -423,9 +378,14 @@ void MilledCheck::judge(process::ProgramProof& program, app::StageClock& clock) 
   std::vector<int> tool_of_operation;
   for (const auto& operation : job_.operations) tool_of_operation.push_back(operation.tool);
   OtherTeeth others(program, *this);
-  const std::vector<path::ToolMotion> firsts = first_in_space_0(program.motions, teeth());
+  const std::vector<path::ToolMotion> firsts = process::first_in_space_0(program.motions, teeth());
   surface = clock.run("cut surface", [&] { return meter_.measure(firsts, others.watch_mm()); });
-  if (program.others_text) clock.run("engagement", [&] { judge_load(firsts, program.reasons); });
+  std::optional<process::LoadJudge> load;
+  if (program.others_text)
+    clock.run("engagement", [&] {
+      load.emplace(load_judge());
+      load->judge(firsts, program.reasons);
+    });
   others.measured(surface);
   program.gouge = clock.run("proof of the program", [&] {
     return gouge_of(check_, program, tool_of_operation,
@@ -434,7 +394,11 @@ void MilledCheck::judge(process::ProgramProof& program, app::StageClock& clock) 
   judge_gouge(program.gouge, check_, limits_.gouge_mm, program.reasons);
   judge_surface(surface, job_, limits_, program.reasons);
   clock.run("cut surface", [&] { judge_unlike(program, others); });
-  if (program.others_text) clock.run("engagement", [&] { judge_other_loads(program, others.loaded_otherwise()); });
+  if (load)
+    clock.run("engagement", [&] {
+      load->judge_by_plan(firsts, program.reasons, program.warnings);
+      judge_other_loads(program, *load, others.loaded_otherwise());
+    });
   if (!program.reasons.empty()) program.reasons.insert(program.reasons.end(), shortened.begin(), shortened.end());
   if (!program.reasons.empty())
     if (const auto coarse = process::coarse_words(job_, machine_, body_.links.radius_mm))

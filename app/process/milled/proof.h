@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "app/process/load_judge.h"
 #include "app/process/milled/body.h"
 #include "app/process/program_proof.h"
 #include "cam/analytic/gouge_check.h"
@@ -35,14 +36,16 @@ class MilledCheck final : public process::GearCheck {
   /// Of the program judged last, for the ledger; its grids stand in the proof. Of the first tooth, or of one that was
   /// measured by itself and keeps more.
   cut::CutSurface surface;
+  process::PlanAnew plan_anew;         ///< what a text of others is held against
   std::vector<std::string> shortened;  ///< passes that end before their flank does: told beside what they leave
 
  private:
   class OtherTeeth;
   [[nodiscard]] const tool::ProofTool& tool_of(int operation) const;
   void judge_unlike(process::ProgramProof& program, const OtherTeeth& others);
-  void judge_load(std::span<const path::ToolMotion> one_space, std::vector<std::string>& reasons) const;
-  void judge_other_loads(process::ProgramProof& program, const std::set<int>& teeth) const;
+  [[nodiscard]] process::LoadJudge load_judge() const;
+  void judge_other_loads(process::ProgramProof& program, const process::LoadJudge& judge,
+                         const std::set<int>& teeth) const;
 
   const job::Job& job_;
   const machines::Machine& machine_;
