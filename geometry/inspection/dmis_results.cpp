@@ -123,6 +123,7 @@ class ResultReader {
     for (const Unit unit : {Unit{"MM", 1}, Unit{"CM", 10}, Unit{"M", 1000}, Unit{"INCH", 25.4}, Unit{"FEET", 304.8}})
       if (upper(fields[0].text) == unit.name) {
         mm_ = unit.mm;
+        out_.unit_mm = unit.mm;
         degrees_ = true;
         other_angle_.clear();
         for (std::size_t k = 1; k < fields.size(); ++k) {

@@ -18,7 +18,7 @@ struct Columns {
   std::size_t values = 3;           ///< 3, or 6 with normals
   std::size_t count = 0;            ///< cells of a line
   bool numbered = false;            ///< the first cell is the number or the name of the point
-  double mm = 1;                    ///< of the unit of x, y, z
+  std::optional<double> mm = {};    ///< of the stated unit of x, y, z
   int line = 0;                     ///< that told it
 };
 
@@ -79,11 +79,11 @@ Result<std::optional<Columns>> named_columns(const Cells& cells, int number, con
     if (unit != headings[out.at[0]].unit)
       return fail_at({file, number, cells[k].column}, "\"{}\" and \"{}\" are in different units",
                      printable(cells[out.at[0]].text), printable(cells[k].text));
-    const auto mm = unit.empty() ? std::optional(1.0) : mm_of_unit(unit);
-    if (!mm)
+    if (unit.empty()) continue;
+    out.mm = mm_of_unit(unit);
+    if (!out.mm)
       return fail_at({file, number, cells[k].column}, "\"{}\": the unit \"{}\" is none of mm, um, cm, m, inch",
                      printable(cells[k].text), printable(unit));
-    out.mm = *mm;
   }
   return std::optional(out);
 }
@@ -100,7 +100,7 @@ std::optional<Columns> counted_columns(const Cells& cells, int number) {
   const std::size_t n = cells.size();
   const bool numbered = n == 4 || n == 7;
   if (n != 3 && n != 6 && !(numbered && names_point(cells.front().text))) return std::nullopt;
-  Columns out{{}, n < 6 ? 3u : 6u, n, numbered, 1, number};
+  Columns out{{}, n < 6 ? 3u : 6u, n, numbered, {}, number};
   for (std::size_t k = 0; k < 6; ++k) out.at[k] = k + numbered;
   return out;
 }
@@ -119,7 +119,7 @@ Result<FilePoint> point_of(const Cells& cells, const Columns& columns, int numbe
     const std::string& text = cells[columns.at[n]].text;
     if (!read_cell(text, value)) return fail_at(place(n), "{} = \"{}\" is no finite number", "xyzijk"[n], text);
   }
-  point.p *= columns.mm;
+  point.p *= columns.mm.value_or(1);
   if (columns.values == 3) return point;
   const auto unit = read_normal(normal, place(3));
   if (!unit) return unit.error();
@@ -168,6 +168,7 @@ Result<PointFile> parse_plain_points(std::string_view text, const std::string& f
   }
   if (out.points.empty())
     return fail_at({file, std::max(number, 1), 1}, "no measured point: lines x y z or x y z i j k are needed");
+  out.unit_mm = columns.mm;
   return out;
 }
 

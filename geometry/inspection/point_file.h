@@ -21,7 +21,8 @@ struct FilePoint {
 
 struct PointFile {
   std::vector<FilePoint> points;
-  std::size_t other_features = 0;  ///< measured features of DMIS that are no points: left out
+  std::size_t other_features = 0;      ///< measured features of DMIS that are no points: left out
+  std::optional<double> unit_mm = {};  ///< mm of the unit of x, y, z that the file states; the points are in mm
 };
 
 /// More points are refused.
