@@ -19,10 +19,14 @@
 #include "app/commands/run.h"
 #include "app/commands/shaper.h"
 #include "app/job/file.h"
+#include "app/job/flank_points.h"
 #include "app/job/job.h"
 #include "app/proposal/library_shelf.h"
+#include "app/proposal/points_gear.h"
 #include "app/proposal/propose.h"
+#include "app/rexs/gears.h"
 #include "geometry/base/json_text.h"
+#include "geometry/base/length_unit.h"
 #include "geometry/base/printable.h"
 #include "machines/machine_file.h"
 
@@ -38,6 +42,10 @@ using proposal::Wishes;
 
 struct NewRequest : CommonRequest {
   std::string gear, route, machine, tools, unit, file, name;
+  std::string points, points_unit, root, tip;  ///< of a gear by points
+  std::string rexs, left_flank, ratio_of_roll;
+  std::optional<int> component;
+  std::optional<double> dedendum, root_radius;
   std::vector<std::string> said;  ///< of tools: "12: stick_out = 40"
   std::array<std::optional<double>, proposal::kQuantities> numbers;
   std::array<std::optional<int>, proposal::kQuantities> whole;
@@ -47,7 +55,17 @@ std::vector<Diagnostic> usage(std::string message) {
   return {Diagnostic{DiagnosticKind::usage, {}, std::move(message)}};
 }
 
-constexpr std::array<std::string_view, 2> kLibraryUnits = {"mm", "inch"};
+constexpr toml::Range kComponent{0, 1e9};
+constexpr toml::Range kRackCoefficient{0, 3};
+constexpr std::array<std::string_view, 2> kLengthUnits = {"mm", "inch"};
+
+/// A unit as an option says it. Refused (kind usage): another one.
+Result<std::optional<double>> unit_said(const char* option, const std::string& unit) {
+  if (unit.empty()) return std::optional<double>();
+  if (std::find(kLengthUnits.begin(), kLengthUnits.end(), unit) == kLengthUnits.end())
+    return fail_as(DiagnosticKind::usage, "{} = {} is neither mm nor inch", option, printable(unit));
+  return mm_of_unit(unit);
+}
 
 using DoneOrErrors = Expected<Ok, std::vector<Diagnostic>>;
 
@@ -63,11 +81,153 @@ std::vector<std::string> machine_names(bool shaper) {
   return names;
 }
 
-Expected<Wishes, std::vector<Diagnostic>> kinds_wished(const NewRequest& request, const Dialog& dialog) {
+constexpr std::array<std::string_view, 2> kFlankWords = {"concave", "convex"};
+constexpr std::array<std::string_view, 2> kRatioWords = {"work_per_cradle", "cradle_per_work"};
+
+/// The gear of a REXS file by its number, or the only one.
+Expected<const rexs::Component*, std::vector<Diagnostic>> choose_component(const rexs::RexsFile& file,
+                                                                           std::optional<int> number,
+                                                                           const Dialog& dialog) {
+  const std::vector<const rexs::Component*> gears = rexs::gears_of(file);
+  if (gears.empty())
+    return std::vector{fail_at({file.file, 1, 1}, "no cylindrical_gear and no bevel_gear stands in this file")};
+  std::vector<std::string> titles;
+  for (const rexs::Component* gear : gears) titles.push_back(gear->title());
+  const std::string all = fmt::format("{}", fmt::join(titles, ", "));
+  const auto of = [&](int id) -> const rexs::Component* {
+    const auto found = std::find_if(gears.begin(), gears.end(), [&](const auto* g) { return g->id == id; });
+    return found == gears.end() ? nullptr : *found;
+  };
+  if (!number && gears.size() == 1) return gears.front();
+  if (!number && dialog.asks()) {
+    dialog.tell({{"gears of the file", all}});
+    const auto answer = dialog.number({"--component", "number of the gear", kComponent, true}, {}, gears.front()->id);
+    if (auto* errors = answer.refused()) return *errors;
+    number = static_cast<int>(answer.value());
+  }
+  if (!number) return usage(fmt::format("--component is missing: {} has {}", printable(file.file), all));
+  if (const rexs::Component* gear = of(*number)) return gear;
+  return usage(fmt::format("--component = {} is no gear of {}: it has {}", *number, printable(file.file), all));
+}
+
+/// Asks what a REXS file leaves open.
+DoneOrErrors answer_question(rexs::Open open, const std::string& why, const Dialog& dialog, rexs::Said& said) {
+  const bool left = open == rexs::Open::left_flank;
+  const char* option = left ? "--left-flank" : "--ratio-of-roll";
+  const auto& words = left ? kFlankWords : kRatioWords;
+  if (!dialog.asks()) return usage(fmt::format("{} is missing, {} or {}: {}", option, words[0], words[1], why));
+  dialog.tell({{option, why}});
+  const auto word = dialog.word(option, left ? "the left flank of the file is" : "its ratio_of_roll is", "", words);
+  if (auto* errors = word.refused()) return *errors;
+  (left ? said.left_is_concave : said.work_per_cradle) = word.value() == words[0];
+  return Ok{};
+}
+
+/// What the options say of a REXS file.
+Expected<rexs::Said, std::vector<Diagnostic>> said_of_rexs(const NewRequest& request) {
+  rexs::Said said{{}, {}, request.dedendum, request.root_radius};
+  const auto one = [](const char* option, const std::string& text, const auto& words,
+                      std::optional<bool>& first) -> Status {
+    if (text.empty()) return Ok{};
+    if (std::find(words.begin(), words.end(), text) == words.end())
+      return fail_as(DiagnosticKind::usage, "{} = {} is neither {} nor {}", option, printable(text), words[0],
+                     words[1]);
+    first = text == words[0];
+    return Ok{};
+  };
+  if (auto told = one("--left-flank", request.left_flank, kFlankWords, said.left_is_concave); !told)
+    return std::vector{told.error()};
+  if (auto told = one("--ratio-of-roll", request.ratio_of_roll, kRatioWords, said.work_per_cradle); !told)
+    return std::vector{told.error()};
+  return said;
+}
+
+/// The gear of --rexs.
+Expected<Wishes, std::vector<Diagnostic>> gear_of_rexs(const NewRequest& request, const Dialog& dialog,
+                                                       proposal::Told& notes) {
+  auto told = said_of_rexs(request);
+  if (auto* errors = told.refused()) return std::move(*errors);
+  rexs::Said& said = told.value();
+  const auto file = rexs::read_rexs(request.rexs);
+  if (!file) return std::vector{file.error()};
+  const auto gear = choose_component(*file, request.component, dialog);
+  if (auto* errors = gear.refused()) return *errors;
+  while (true) {
+    auto made = rexs::gear_of(*file, *gear.value(), said);
+    if (auto* obstacles = made.refused()) {
+      if (!obstacles->errors.empty()) return std::move(obstacles->errors);
+      const auto& [open, why] = obstacles->questions.front();
+      if (auto asked = answer_question(open, why, dialog, said); auto* errors = asked.refused())
+        return std::move(*errors);
+      continue;
+    }
+    notes = {{"gear of the file", gear.value()->title()}};
+    if (const auto& out = made.value().left_out; !out.empty())
+      notes.emplace_back("not taken over", fmt::format("{}", fmt::join(out, ", ")));
+    Wishes wishes;
+    if (auto* cylinder = std::get_if<cylindrical::CylindricalParameters>(&made.value().gear)) {
+      wishes.gear = proposal::Gear::cylindrical;
+      wishes.cylinder = std::make_shared<const cylindrical::CylindricalParameters>(std::move(*cylinder));
+    } else {
+      wishes.gear = proposal::Gear::spiral_bevel;
+      wishes.spiral = std::make_shared<const spiral_bevel::SpiralBevelParameters>(
+          std::get<spiral_bevel::SpiralBevelParameters>(std::move(made.value().gear)));
+    }
+    dialog.tell(notes);
+    return wishes;
+  }
+}
+
+/// Kind of gear, and all of one that stands in a file.
+Expected<Wishes, std::vector<Diagnostic>> gear_wished(const NewRequest& request, const Dialog& dialog,
+                                                      proposal::Told& notes) {
+  using Given = std::vector<std::pair<const char*, bool>>;
+  const Given by_points = {{"--points", !request.points.empty()},
+                           {"--points-unit", !request.points_unit.empty()},
+                           {"--root", !request.root.empty()},
+                           {"--tip", !request.tip.empty()}};
+  const auto belong = [](const char* to, const Given& options) {
+    for (const auto& [option, given] : options)
+      if (given) return usage(fmt::format("{} does not belong {}", option, to));
+    return std::vector<Diagnostic>();
+  };
+  if (!request.rexs.empty()) {
+    auto wishes = gear_of_rexs(request, dialog, notes);
+    if (wishes.refused()) return wishes;
+    if (!request.gear.empty() && request.gear != word_of(*wishes.value().gear))
+      return usage(
+          fmt::format("--gear {}: that of --rexs is {}", printable(request.gear), word_of(*wishes.value().gear)));
+    if (auto errors = belong("to --rexs", by_points); !errors.empty()) return errors;
+    return wishes;
+  }
+  if (auto errors = belong("to a job without --rexs", {{"--component", request.component.has_value()},
+                                                       {"--left-flank", !request.left_flank.empty()},
+                                                       {"--ratio-of-roll", !request.ratio_of_roll.empty()},
+                                                       {"--dedendum-coefficient", request.dedendum.has_value()},
+                                                       {"--root-radius-coefficient", request.root_radius.has_value()}});
+      !errors.empty())
+    return errors;
   Wishes wishes;
-  const auto gear = dialog.word("--gear", "kind of gear", request.gear, proposal::gear_words());
+  const auto gear = dialog.word(
+      "--gear", "kind of gear",
+      request.gear.empty() && !request.points.empty() ? std::string(word_of(proposal::Gear::flank_grid)) : request.gear,
+      proposal::gear_words());
   if (auto* errors = gear.refused()) return *errors;
   wishes.gear = proposal::gear_of(gear.value());
+  if (wishes.gear == proposal::Gear::spiral_bevel)
+    return usage("--rexs is missing: a file with the settings of the generator that makes the spiral bevel gear");
+  if (wishes.gear != proposal::Gear::flank_grid)
+    if (auto errors = belong(fmt::format("to --gear {}", gear.value()).c_str(), by_points); !errors.empty())
+      return errors;
+  return wishes;
+}
+
+/// Kind of gear, how it is cut and on which machine.
+Expected<Wishes, std::vector<Diagnostic>> kinds_wished(const NewRequest& request, const Dialog& dialog,
+                                                       proposal::Told& notes) {
+  auto wished = gear_wished(request, dialog, notes);
+  if (wished.refused()) return wished;
+  Wishes wishes = std::move(wished.value());
   std::vector<std::string_view> routes;
   for (const proposal::Route route : proposal::routes_of(*wishes.gear)) routes.push_back(word_of(route));
   const std::string given = request.route.empty() && !dialog.asks() ? std::string(routes.front()) : request.route;
@@ -123,9 +283,102 @@ DoneOrErrors wish_number(Wishes& wishes, const Question& question, std::optional
   }
 }
 
+/// The points of --points, or of a file that is asked for.
+Expected<proposal::PointsOfFile, std::vector<Diagnostic>> choose_points(const NewRequest& request,
+                                                                        const Dialog& dialog) {
+  const auto unit = unit_said("--points-unit", request.points_unit);
+  if (!unit) return std::vector{unit.error()};
+  std::string file = request.points;
+  if (file.empty() && !dialog.asks())
+    return usage("--points is missing: a file with the points of both flanks of one space");
+  if (file.empty()) {
+    const auto judge = [](const std::string& answer) -> std::optional<std::string> {
+      return answer.empty() ? std::optional<std::string>("the name of a file is needed") : std::nullopt;
+    };
+    const auto answer = dialog.text("--points", "file with the points of both flanks of one space", {}, judge);
+    if (auto* errors = answer.refused()) return *errors;
+    file = answer.value();
+  }
+  auto read = proposal::read_points(file, *unit);
+  if (!read) return std::vector{read.error()};
+  return std::move(*read);
+}
+
+/// The unit of points that are small in mm and state none: asked for, never guessed.
+DoneOrErrors ask_unit(proposal::PointsOfFile& points, double teeth, const Dialog& dialog) {
+  const auto why = proposal::looks_like_inches(points, teeth);
+  if (!why) return Ok{};
+  if (!dialog.asks()) return usage(fmt::format("--points-unit is missing, mm or inch: {}", *why));
+  dialog.tell({{"unit of the points", *why}});
+  const auto word = dialog.word("--points-unit", "unit of x, y and z", "", kLengthUnits);
+  if (auto* errors = word.refused()) return *errors;
+  auto read = proposal::read_points(points.file, mm_of_unit(word.value()));
+  if (!read) return std::vector{read.error()};
+  points = std::move(*read);
+  return Ok{};
+}
+
+/// A meridian as an option says it; asked for, with what follows from the points.
+Expected<std::vector<Vec2>, std::vector<Diagnostic>> ask_meridian(const char* option, const char* text,
+                                                                  const std::string& given,
+                                                                  const std::vector<Vec2>& proposed,
+                                                                  const Dialog& dialog) {
+  std::string said = given;
+  if (said.empty() && !dialog.asks()) return proposed;
+  if (said.empty()) {
+    const auto judge = [&](const std::string& answer) -> std::optional<std::string> {
+      const auto read = proposal::read_meridian(option, answer);
+      return read ? std::nullopt : std::optional(read.error().message);
+    };
+    const auto answer = dialog.text(option, text, proposal::meridian_text(proposed), judge);
+    if (auto* errors = answer.refused()) return *errors;
+    said = answer.value();
+  }
+  const auto read = proposal::read_meridian(option, said);
+  if (!read) return std::vector{read.error()};
+  return *read;
+}
+
+/// Tip and root of a gear by points, behind its teeth and ahead of its fillet.
+DoneOrErrors wish_meridians(Wishes& wishes, proposal::PointsOfFile& points, const NewRequest& request,
+                            const Dialog& dialog) {
+  const double teeth = wishes.at(Quantity::teeth);
+  if (auto asked = ask_unit(points, teeth, dialog); asked.refused()) return asked;
+  const flank_grid::MeridianProposal meridians(points.points);
+  flank_grid::FlankGridParameters grid;
+  grid.teeth = static_cast<int>(teeth);
+  grid.file = points.file;
+  grid.plus = points.points.plus;
+  grid.minus = points.points.minus;
+  auto tip =
+      ask_meridian("--tip", "tip surface in the meridian, [r, z] at both ends", request.tip, meridians.tip(), dialog);
+  if (auto* errors = tip.refused()) return std::move(*errors);
+  grid.tip = std::move(tip.value());
+  const auto fillet = request.numbers[static_cast<std::size_t>(Quantity::fillet_radius)];
+  auto root = ask_meridian("--root", "root surface in the meridian, [r, z] at both ends", request.root,
+                           meridians.root(fillet.value_or(proposal::proposed_fillet_mm(meridians, teeth))), dialog);
+  if (auto* errors = root.refused()) return std::move(*errors);
+  grid.root = std::move(root.value());
+  wishes.grid = std::make_shared<const flank_grid::FlankGridParameters>(std::move(grid));
+  return Ok{};
+}
+
 /// All numbers of the gear, each with the limits that are known before it.
 DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, const Dialog& dialog,
                           const proposal::ChosenMachine& machine) {
+  if (wishes.whole()) {
+    for (const Question& question : proposal::questions())
+      if (const auto at = static_cast<std::size_t>(question.what); request.whole[at] || request.numbers[at])
+        return usage(fmt::format("{} does not belong to --rexs, whose file says it", question.option));
+    return Ok{};
+  }
+  const bool by_points = wishes.gear == proposal::Gear::flank_grid;
+  std::optional<proposal::PointsOfFile> points;
+  if (by_points) {
+    auto read = choose_points(request, dialog);
+    if (auto* errors = read.refused()) return std::move(*errors);
+    points = std::move(read.value());
+  }
   for (const Question& question : proposal::questions()) {
     const auto at = static_cast<std::size_t>(question.what);
     const auto given =
@@ -140,8 +393,15 @@ DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, const Dialo
         dialog.tell({{"outer end that turns on " + machine.name,
                       fmt::format("up to {:g} mm", 0.5 * machine.mill->largest_part_mm())}});
     }
+    if (question.what == Quantity::fillet_radius)
+      if (auto asked = wish_meridians(wishes, *points, request, dialog); asked.refused()) return asked;
     if (auto asked = wish_number(wishes, question, given, dialog, machine); asked.refused()) return asked;
   }
+  if (!by_points) return Ok{};
+  flank_grid::FlankGridParameters grid = *wishes.grid;
+  grid.fillet_radius_mm = wishes.at(Quantity::fillet_radius);
+  grid.bore_diameter_mm = wishes.at(Quantity::bore);
+  wishes.grid = std::make_shared<const flank_grid::FlankGridParameters>(std::move(grid));
   return Ok{};
 }
 
@@ -205,6 +465,7 @@ bool is_verified(const Expected<Proposed, std::vector<Diagnostic>>& proposed) {
 /// What a job is made from.
 struct Choice {
   Wishes wishes;
+  proposal::Told notes;  ///< of a gear that stands in a file
   proposal::ChosenMachine machine;
   proposal::ChosenGear gear;
   proposal::Shelf shelf;           ///< empty: standard sizes
@@ -250,6 +511,10 @@ CommandOutcome told(const NewRequest& request, const Proposed& proposed, const p
   outcome.exit_code = proposed.proof.exit_code;
   std::string out = request.file + "\n";
   nlohmann::ordered_json json = {{"schema", 1}, {"command", "new"}, {"file", request.file}, {"job", proposed.text}};
+  if (const std::string& points = proposed.draft.wishes.points_file; !points.empty()) {
+    json["points"] = points;
+    out += fmt::format("  {:<40} {}\n", "its points, in order, beside it", points);
+  }
   json["limits"] = nlohmann::ordered_json::object();
   for (const auto& [what, value] : limits) {
     out += fmt::format("  {:<40} {}\n", what, value);
@@ -387,9 +652,7 @@ DoneOrErrors choose_tools(const NewRequest& request, const Dialog& dialog, Choic
     return usage("--tool says what a tool library does not, and --tools names none");
   if (!library_file && !request.unit.empty())
     return usage("--library-unit is the unit of a tool library, and --tools names none");
-  if (!request.unit.empty() &&
-      std::find(kLibraryUnits.begin(), kLibraryUnits.end(), request.unit) == kLibraryUnits.end())
-    return usage(fmt::format("--library-unit = {} is neither mm nor inch", printable(request.unit)));
+  if (const auto unit = unit_said("--library-unit", request.unit); !unit) return std::vector{unit.error()};
   const bool used = choice.wishes.route == proposal::Route::ball || choice.wishes.route == proposal::Route::line;
   if (request.tools.empty() || !used) return Ok{};
   if (!library_file) {
@@ -433,9 +696,9 @@ DoneOrErrors choose_tools(const NewRequest& request, const Dialog& dialog, Choic
 
 /// All that is asked for, in its order.
 Expected<Choice, std::vector<Diagnostic>> choose(const NewRequest& request, const Dialog& dialog) {
-  auto wished = kinds_wished(request, dialog);
-  if (auto* errors = wished.refused()) return std::move(*errors);
   Choice choice;
+  auto wished = kinds_wished(request, dialog, choice.notes);
+  if (auto* errors = wished.refused()) return std::move(*errors);
   choice.wishes = std::move(wished.value());
   auto machine = proposal::choose_machine(choice.wishes, fs::path(request.file).parent_path().string());
   if (auto* errors = machine.refused()) return std::move(*errors);
@@ -453,6 +716,40 @@ Expected<Choice, std::vector<Diagnostic>> choose(const NewRequest& request, cons
   return choice;
 }
 
+/// The ordered points of a gear beside its job: there while the job is tried, and afterwards where it is kept.
+class PointsBesideJob {
+ public:
+  /// Nothing for gears that have no points. Errors: as of the job itself.
+  Status write(const std::string& job, Wishes& wishes) {
+    if (!wishes.grid) return Ok{};
+    fs::path path(job);
+    path.replace_filename(path.stem().string() + "_flanks.csv");
+    wishes.points_file = path.filename().string();
+    if (auto named = can_be_named("-o", wishes.points_file); !named) return named;
+    if (auto fresh = app::check_new_file(path.string(), "-o"); !fresh) return fresh;
+    auto written = app::write_new_file(path.string(), job::flank_points_text({wishes.grid->plus, wishes.grid->minus}));
+    if (!written) return written;
+    path_ = path.string();
+    (void)app::register_temporary(AT_FDCWD, path_, false);
+    return Ok{};
+  }
+  void keep() {
+    if (!path_.empty()) app::forget_temporary(AT_FDCWD, path_);
+    path_.clear();
+  }
+  PointsBesideJob() = default;
+  ~PointsBesideJob() {
+    if (path_.empty()) return;
+    ::unlink(path_.c_str());
+    app::forget_temporary(AT_FDCWD, path_);
+  }
+  PointsBesideJob(const PointsBesideJob&) = delete;
+  PointsBesideJob& operator=(const PointsBesideJob&) = delete;
+
+ private:
+  std::string path_;
+};
+
 CommandOutcome run_new(const NewRequest& asked) {
   NewRequest request = asked;
   if (request.file.empty()) return failed(usage("-o is missing: the job file to write"));
@@ -464,6 +761,8 @@ CommandOutcome run_new(const NewRequest& asked) {
   auto chosen = choose(request, dialog);
   if (auto* errors = chosen.refused()) return failed(std::move(*errors));
   Choice& choice = chosen.value();
+  PointsBesideJob points;
+  if (auto written = points.write(request.file, choice.wishes); !written) return failed(written.error());
   auto proposed = propose(request, choice);
   if (request.route.empty() && !dialog.asks() && choice.wishes.route == proposal::Route::line &&
       !is_verified(proposed)) {
@@ -477,10 +776,12 @@ CommandOutcome run_new(const NewRequest& asked) {
       if (error.kind != DiagnosticKind::file_access) error.position = {};  // a place in a job that goes again
     return failed(std::move(proof.errors));
   }
-  proposal::Told limits = limits_of(choice.wishes);
-  for (const auto& more : {limits_of(choice.gear), limits_of(proposed.value().draft, choice.machine, choice.gear)})
+  proposal::Told limits = choice.notes;
+  for (const auto& more : {limits_of(choice.wishes), limits_of(choice.gear),
+                           limits_of(proposed.value().draft, choice.machine, choice.gear)})
     limits.insert(limits.end(), more.begin(), more.end());
   if (auto written = app::write_new_file(request.file, proposed.value().text); !written) return failed(written.error());
+  points.keep();
   return told(request, proposed.value(), limits);
 }
 
@@ -492,7 +793,7 @@ void new_options(OptionSet& set, NewRequest& request) {
            "tools instead of standard sizes: those of a job, or of a tool library of LinuxCNC, Fusion or FreeCAD",
            "FILE");
   set.word("--library-unit", request.unit, "unit of the lengths for which a tool library states none", "UNIT",
-           kLibraryUnits);
+           kLengthUnits);
   set.texts("--tool", request.said, "what a tool library does not say of a tool: \"12: stick_out = 40, teeth = 2\"",
             "NUMBER:KEYS");
   for (const Question& question : proposal::questions()) {
@@ -500,6 +801,26 @@ void new_options(OptionSet& set, NewRequest& request) {
     if (question.whole) set.whole_number(question.option, request.whole[at], question.text, question.range);
     else set.number(question.option, request.numbers[at], question.text, question.range);
   }
+  set.text("--points", request.points,
+           "a gear by points: a file of x y z[ i j k] of both flanks of one space, in any order", "FILE");
+  set.word("--points-unit", request.points_unit, "unit of x, y and z for which the file states none", "UNIT",
+           kLengthUnits);
+  set.text("--tip", request.tip,
+           "its tip surface in the meridian, where not through the last rows of points: r z at both ends",
+           "[[R, Z], [R, Z]]");
+  set.text("--root", request.root, "its root surface, where not as deep as the fillet below the first rows",
+           "[[R, Z], [R, Z]]");
+  set.text("--rexs", request.rexs,
+           "a cylindrical or spiral bevel gear, with the settings of its generator, from a REXS file 1.4 to 1.7",
+           "FILE");
+  set.whole_number("--component", request.component, "number of the gear in a REXS file that has several", kComponent);
+  set.word("--left-flank", request.left_flank, "of a bevel gear in a REXS file whose flanks have a set-up each",
+           "WHICH", kFlankWords);
+  set.word("--ratio-of-roll", request.ratio_of_roll, "sense of ratio_of_roll where the file leaves it open", "SENSE",
+           kRatioWords);
+  set.number("--dedendum-coefficient", request.dedendum, "of a cylindrical gear whose REXS file has no tool",
+             kRackCoefficient);
+  set.number("--root-radius-coefficient", request.root_radius, "of the rounding of its rack's tip", kRackCoefficient);
   set.text("--name", request.name, "name of the job; else that of the file", "NAME");
   set.text("-o", request.file, "the job file to write; an existing one is not replaced", "JOB.toml");
 }

@@ -72,7 +72,37 @@ Result<flank_grid::GridPoints> grid_of(const std::vector<Line>& lines, int side,
   return grid;
 }
 
+/// Numbers of a line that is a header; 0: it is none.
+std::size_t columns_of(std::string_view line) {
+  return inspection::names_columns(line, kWithNormals) ? 9 : inspection::names_columns(line, kPlaces) ? 6 : 0;
+}
+
 }  // namespace
+
+bool looks_like_flank_points(std::string_view text) {
+  auto line = inspection::take_line(text, 0);
+  if (inspection::is_separator_line(line.text)) line = inspection::take_line(text, 1);
+  return columns_of(line.text) > 0;
+}
+
+std::string flank_points_text(const FlankPoints& points) {
+  const bool normals = !points.plus.normal.empty();
+  std::string text = fmt::format("{}\n", normals ? kWithNormals : kPlaces);
+  for (const int side : {1, -1}) {
+    const flank_grid::GridPoints& grid = side > 0 ? points.plus : points.minus;
+    for (int row = 0; row < grid.rows; ++row)
+      for (int column = 0; column < grid.columns; ++column) {
+        const Vec3& p = grid.place[grid.index(row, column)];
+        text += fmt::format("{},{},{},{},{},{}", side, row, column, p.x(), p.y(), p.z());
+        if (normals) {
+          const Vec3& n = grid.normal[grid.index(row, column)];
+          text += fmt::format(",{:.12f},{:.12f},{:.12f}", n.x(), n.y(), n.z());
+        }
+        text += '\n';
+      }
+  }
+  return text;
+}
 
 Result<FlankPoints> parse_flank_points(std::string_view text, const std::string& file) {
   std::vector<Line> lines;
@@ -84,7 +114,7 @@ Result<FlankPoints> parse_flank_points(std::string_view text, const std::string&
     const SourcePosition at{file, number, 1};
     if (count == 0) {
       if (inspection::is_separator_line(row)) continue;
-      count = inspection::names_columns(row, kWithNormals) ? 9 : inspection::names_columns(row, kPlaces) ? 6 : 0;
+      count = columns_of(row);
       if (count == 0)
         return fail_at(at, "the header is \"{}\", must be \"{}\" or \"{}\"", printable(row.substr(0, 120)), kPlaces,
                        kWithNormals);

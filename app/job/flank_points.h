@@ -18,5 +18,9 @@ struct FlankPoints {
 /// Refused with line and column: another header, numbers that are none, points that stand there twice or are missing.
 /// `file` stands in the messages.
 [[nodiscard]] Result<FlankPoints> parse_flank_points(std::string_view text, const std::string& file);
+/// Whether the first line is one of those headers.
+[[nodiscard]] bool looks_like_flank_points(std::string_view text);
+/// Such a file, every number with all its digits; normals with twelve.
+[[nodiscard]] std::string flank_points_text(const FlankPoints& points);
 
 }  // namespace toothpath::job

@@ -84,6 +84,7 @@ bevel_gear::BevelGearParameters bevel_parameters(const Wishes& wishes) {
 }
 
 cylindrical::CylindricalParameters cylindrical_parameters(const Wishes& wishes) {
+  if (wishes.cylinder) return *wishes.cylinder;
   cylindrical::CylindricalParameters p;
   p.teeth = static_cast<int>(wishes.at(Quantity::teeth));
   p.module_mm = wishes.at(Quantity::module);
@@ -162,6 +163,24 @@ FaceFacts straight_bevel_facts(const straight_bevel::StraightBevelGear& gear) {
   FaceFacts facts;
   facts.depth = gear.parameters().addendum_mm + gear.parameters().dedendum_mm;
   add_balls(straight_bevel::part_of(gear), facts);
+  return facts;
+}
+
+FaceFacts spiral_bevel_facts(const spiral_bevel::SpiralBevelGear& gear) {
+  FaceFacts facts;
+  const auto& ring = gear.space().outline();  // s is minus the cone distance
+  facts.depth = std::max(gear.space().tip(ring.s_from) - gear.body().root_back,
+                         gear.space().tip(ring.s_to) - gear.body().root_front);
+  add_balls(spiral_bevel::part_of(gear), facts);
+  return facts;
+}
+
+FaceFacts flank_grid_facts(const flank_grid::FlankGridGear& gear) {
+  FaceFacts facts;
+  const auto& ring = gear.space().outline();
+  for (const double s : {ring.s_from, ring.s_to})
+    facts.depth = std::max(facts.depth, gear.space().tip(s) - gear.root(s));
+  add_balls(flank_grid::part_of(gear), facts);
   return facts;
 }
 

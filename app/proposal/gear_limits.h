@@ -7,6 +7,8 @@
 #include "geometry/bevel_gear/parameters.h"
 #include "geometry/cylindrical/gear.h"
 #include "geometry/face_gear/gear.h"
+#include "geometry/flank_grid/gear.h"
+#include "geometry/spiral_bevel/gear.h"
 #include "geometry/straight_bevel/gear.h"
 
 namespace toothpath::proposal {
@@ -24,7 +26,7 @@ struct FaceRange {
 /// The same with its ends; a double helical gear has a groove in its middle.
 [[nodiscard]] face_gear::FaceGearParameters whole_face_parameters(const Wishes& wishes);
 [[nodiscard]] bevel_gear::BevelGearParameters bevel_parameters(const Wishes& wishes);
-/// One zone about z = 0.
+/// Those of a file, or one zone about z = 0.
 [[nodiscard]] cylindrical::CylindricalParameters cylindrical_parameters(const Wishes& wishes);
 
 /// Gleason proportions for shafts at 90 deg, the largest rounding up to 0.3 modules that the crown gear's teeth carry.
@@ -46,5 +48,7 @@ struct FaceFacts {
 [[nodiscard]] FaceFacts face_facts(const face_gear::FaceGear& gear);
 [[nodiscard]] FaceFacts cylindrical_facts(const cylindrical::CylindricalGear& gear);
 [[nodiscard]] FaceFacts straight_bevel_facts(const straight_bevel::StraightBevelGear& gear);
+[[nodiscard]] FaceFacts spiral_bevel_facts(const spiral_bevel::SpiralBevelGear& gear);
+[[nodiscard]] FaceFacts flank_grid_facts(const flank_grid::FlankGridGear& gear);
 
 }  // namespace toothpath::proposal

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "app/proposal/gear_limits.h"
+#include "app/proposal/points_gear.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 #include "machines/toml/quoted.h"
@@ -21,6 +22,12 @@ std::string real(double x) {
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text += '0';
   return text;
+}
+
+/// Such a number with all that a file said of it; twelve digits, which hide what turning degrees into radians leaves.
+std::string exact(double x) {
+  std::string text = fmt::format("{:.12g}", x == 0 ? 0.0 : x);
+  return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
 /// `key = value`, and what it means behind it.
@@ -59,17 +66,21 @@ std::string cylindrical_text(const Wishes& wishes) {
   const cylindrical::CylindricalParameters p = cylindrical_parameters(wishes);
   std::string text = "\n[gear]\ntype = \"cylindrical_gear\"\n";
   text += line("teeth", fmt::format("{}", p.teeth));
-  text += line("module", real(p.module_mm));
+  text += line("module", exact(p.module_mm));
   text += line("module_plane", "\"normal\"", "\"normal\" or \"transverse\": for module and pressure angle");
-  text += line("pressure_angle", real(wishes.at(Quantity::pressure_angle)));
-  text += line("profile_shift", real(p.profile_shift), "in modules");
-  text += line("addendum_coefficient", real(p.addendum_coefficient), "of the basic rack, in modules");
-  text += line("dedendum_coefficient", real(p.dedendum_coefficient));
-  text += line("root_radius_coefficient", real(p.root_radius_coefficient), "rounding of the rack's tip: the fillet");
+  text += line("pressure_angle", exact(degrees(p.pressure_angle_rad)));
+  text += line("profile_shift", exact(p.profile_shift), "in modules");
+  text += line("addendum_coefficient", exact(p.addendum_coefficient), "of the basic rack, in modules");
+  text += line("dedendum_coefficient", exact(p.dedendum_coefficient));
+  text += line("root_radius_coefficient", exact(p.root_radius_coefficient), "rounding of the rack's tip: the fillet");
+  if (p.tip_diameter_mm) text += line("tip_diameter", exact(*p.tip_diameter_mm));
+  if (p.thickness_allowance_mm < 0)
+    text += line("thickness_allowance", exact(p.thickness_allowance_mm), "of the teeth, on the reference cylinder");
+  if (p.bore_diameter_mm > 0) text += line("bore_diameter", exact(p.bore_diameter_mm));
   text += "\n[[gear.zone]]                    # one ring of teeth\n";
-  text += line("helix_angle", real(degrees(p.zones.front().helix_angle_rad)), "above 0 is right hand");
-  text += line("from", real(p.zones.front().from_mm), "along the gear axis");
-  text += line("to", real(p.zones.front().to_mm));
+  text += line("helix_angle", exact(degrees(p.zones.front().helix_angle_rad)), "above 0 is right hand");
+  text += line("from", exact(p.zones.front().from_mm), "along the gear axis");
+  text += line("to", exact(p.zones.front().to_mm));
   return text;
 }
 
@@ -109,6 +120,77 @@ std::string bevel_text(const Wishes& wishes) {
   text += line("addendum", real(p.addendum_mm));
   text += line("dedendum", real(p.dedendum_mm));
   text += line("backlash", "0.0", "of the pair, along the outer pitch circle");
+  return text;
+}
+
+/// A number of the one blade, or of both.
+std::string blades_text(const spiral_bevel::Cut& cut, double spiral_bevel::Blade::*member, bool angle) {
+  const auto text = [&](std::size_t k) {
+    const double x = cut.blades[k].*member;
+    return exact(angle ? degrees(x) : x);
+  };
+  if (cut.flank == spiral_bevel::Cuts::both) return fmt::format("[{}, {}]", text(0), text(1));
+  return text(cut.flank == spiral_bevel::Cuts::concave ? 0 : 1);
+}
+
+std::string cut_text(const spiral_bevel::Cut& cut) {
+  using spiral_bevel::Blade;
+  using spiral_bevel::Cuts;
+  const bool both = cut.flank == Cuts::both;
+  std::string text = "\n[[gear.cut]]\n";
+  text += line("flank", both ? "\"both\"" : cut.flank == Cuts::concave ? "\"concave\"" : "\"convex\"");
+  if (!cut.generated) text += line("generated", "false", "the flank is the cutter's cone");
+  text += line("blade_point_radius", blades_text(cut, &Blade::point_radius_mm, false), both ? "[outside, inside]" : "");
+  text += line("blade_pressure_angle", blades_text(cut, &Blade::pressure_angle_rad, true));
+  text += line("tool_edge_radius", blades_text(cut, &Blade::edge_radius_mm, false), "the fillet is its envelope");
+  text += line("radial_distance", exact(cut.radial_distance_mm));
+  text += line("center_roll_position", exact(degrees(cut.cradle_angle_rad)));
+  text += line("machine_root_angle", exact(degrees(cut.root_angle_rad)));
+  text += line("work_offset", exact(cut.work_offset_mm));
+  text += line("sliding_base", exact(cut.sliding_base_mm));
+  text += line("machine_center_to_crossing_point", exact(cut.machine_center_mm));
+  if (cut.generated) text += line("ratio_of_roll", exact(cut.ratio_of_roll), "work per cradle");
+  if (!cut.modified.empty()) {
+    std::string list;
+    for (const double c : cut.modified) list += (list.empty() ? "" : ", ") + exact(c);
+    text += line("modified_roll_coefficients", "[" + list + "]");
+  }
+  if (cut.tilt_rad != 0 || cut.swivel_rad != 0) {
+    text += line("cutter_tilt", exact(degrees(cut.tilt_rad)));
+    text += line("cutter_swivel", exact(degrees(cut.swivel_rad)));
+  }
+  return text;
+}
+
+std::string spiral_bevel_text(const Wishes& wishes) {
+  const spiral_bevel::SpiralBevelParameters& p = *wishes.spiral;
+  std::string text = "\n[gear]\ntype = \"spiral_bevel_gear\"\n";
+  text += line("teeth", fmt::format("{}", p.teeth));
+  text += line("hand", p.hand > 0 ? "\"right\"" : "\"left\"");
+  text += line("shaft_angle", exact(degrees(p.shaft_angle_rad)), "of the pair");
+  text += line("pitch_angle", exact(degrees(p.pitch_angle_rad)));
+  text += line("outer_cone_distance", exact(p.outer_cone_distance_mm));
+  text += line("face_width", exact(p.face_width_mm), "along the pitch cone, from the large end inwards");
+  text += line("tip_angle", exact(degrees(p.tip_angle_rad)), "of the face cone");
+  if (p.tip_apex_mm != 0) text += line("tip_apex", exact(p.tip_apex_mm), "beyond the crossing point");
+  if (p.root_angle_rad) text += line("root_angle", exact(degrees(*p.root_angle_rad)));
+  if (p.root_apex_mm) text += line("root_apex", exact(*p.root_apex_mm), "beyond the crossing point");
+  if (p.mean_space_width_mm)
+    text += line("mean_space_width", exact(*p.mean_space_width_mm), "arc at the mean cone distance");
+  if (p.bore_diameter_mm > 0) text += line("bore_diameter", exact(p.bore_diameter_mm));
+  for (const spiral_bevel::Cut& cut : p.cuts) text += cut_text(cut);
+  return text;
+}
+
+std::string flank_grid_text(const Wishes& wishes) {
+  const flank_grid::FlankGridParameters& p = *wishes.grid;
+  std::string text = "\n[gear]\ntype = \"flank_grid\"\n";
+  text += line("teeth", fmt::format("{}", p.teeth));
+  text += line("points", toml::quoted(wishes.points_file), "flank, row, column and place of each; beside this job");
+  text += line("fillet_radius", exact(p.fillet_radius_mm), "of the ball that rolls between flank and root");
+  text += line("root", meridian_text(p.root), "[r, z] at both ends");
+  text += line("tip", meridian_text(p.tip));
+  if (p.bore_diameter_mm > 0) text += line("bore_diameter", exact(p.bore_diameter_mm));
   return text;
 }
 
@@ -255,20 +337,21 @@ std::string gear_text(const std::string& name, const Wishes& wishes) {
          (wishes.gear == Gear::bevel_herringbone ? bevel_text(wishes)
           : wishes.gear == Gear::cylindrical     ? cylindrical_text(wishes)
           : wishes.gear == Gear::straight_bevel  ? straight_bevel_text(wishes)
+          : wishes.gear == Gear::spiral_bevel    ? spiral_bevel_text(wishes)
+          : wishes.gear == Gear::flank_grid      ? flank_grid_text(wishes)
                                                  : face_text(wishes));
 }
 
 std::string job_text(const Draft& draft, const LibraryWords& library, const std::string& schema) {
-  const bool finger = draft.wishes.gear == Gear::bevel_herringbone,
-             bevel = finger || draft.wishes.gear == Gear::straight_bevel;
+  const bool finger = draft.wishes.gear == Gear::bevel_herringbone;
   std::string text = schema.empty() ? std::string() : fmt::format("#:schema {}\n", schema);
   text += "# Lengths in mm, angles in degrees, feeds in mm/min, speeds in 1/min. All keys: docs/job_reference.md.\n" +
           gear_text(draft.name, draft.wishes) + machine_table(draft);
   if (draft.wishes.route == Route::shaped) return text + shaping_text();
   text += "\n[setup]\n";
   text += line("origin", vector_text(draft.place.origin_mm), "gear frame in machine coordinates, all rotaries at zero");
-  text += line("axis", bevel ? "\"down\"" : "\"up\"",
-               bevel                                    ? "gear z points down: apex on top"
+  text += line("axis", draft.up ? "\"up\"" : "\"down\"",
+               !draft.up                                ? "gear z points down: apex on top"
                : draft.wishes.gear == Gear::cylindrical ? "the machine lays the axis down: the tool comes in radially"
                                                         : "teeth towards the spindle");
   text += line("work_offset", toml::quoted(draft.work_offset), "the program counts from it");

@@ -23,6 +23,7 @@ struct Draft {
   bool has_first = false;
   bool coarse = false;  ///< wider tolerances and slower: for controls that count coarsely
   double depth_mm = 0;
+  bool up = true;  ///< z of the gear along that of the machine
 };
 
 /// Schema, name and [gear]: what limits and tools follow from.

@@ -87,12 +87,16 @@ std::vector<ToolPlace> cylinder_places(double z_low_mm, double z_high_mm, double
 }
 
 std::vector<ToolPlace> finger_places(double inner_mm, double outer_mm, double pitch_angle_rad, double depth_mm) {
-  std::vector<ToolPlace> places;
   const double s = std::sin(pitch_angle_rad), c = std::cos(pitch_angle_rad);
-  const Vec3 axis(c, 0, -s);
-  for (const double R : {inner_mm, outer_mm})
+  return meridian_places(inner_mm * Vec2(s, c), outer_mm * Vec2(s, c), {c, -s}, depth_mm);
+}
+
+std::vector<ToolPlace> meridian_places(const Vec2& from, const Vec2& to, const Vec2& up, double depth_mm) {
+  std::vector<ToolPlace> places;
+  const Vec3 axis(up.x(), 0, up.y());
+  for (const Vec2& at : {from, to})
     for (const double lift : {-depth_mm, depth_mm + kApproach})
-      places.push_back({R * Vec3(s, 0, c) + lift * axis, axis});
+      places.push_back({Vec3(at.x(), 0, at.y()) + lift * axis, axis});
   return places;
 }
 

@@ -40,7 +40,9 @@ struct Place {
 /// The same of a cylindrical gear: the tool comes in along radii, between two heights.
 [[nodiscard]] std::vector<ToolPlace> cylinder_places(double z_low_mm, double z_high_mm, double inner_mm,
                                                      double outer_mm);
-/// Of a finger mill on a pitch cone: normal to it, between two cone distances and above.
+/// Normal to teeth that stand between two places (r, z), as deep below them as told and clear above.
+[[nodiscard]] std::vector<ToolPlace> meridian_places(const Vec2& from, const Vec2& to, const Vec2& up, double depth_mm);
+/// The same of a pitch cone, between two cone distances.
 [[nodiscard]] std::vector<ToolPlace> finger_places(double inner_mm, double outer_mm, double pitch_angle_rad,
                                                    double depth_mm);
 

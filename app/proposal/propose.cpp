@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "app/proposal/points_gear.h"
 #include "geometry/base/angle.h"
 #include "geometry/tooth_space/bevel_body.h"
 #include "machines/machine_file.h"
@@ -32,10 +33,26 @@ std::string option_of(const std::string& key) {
                                                               {"helix_angle", "--helix"},
                                                               {"outer_spiral_angle", "--spiral"},
                                                               {"face_width", "--face-width"},
-                                                              {"profile_shift", "--profile-shift"}};
+                                                              {"profile_shift", "--profile-shift"},
+                                                              {"fillet_radius", "--fillet-radius"},
+                                                              {"bore_diameter", "--bore"},
+                                                              {"points", "--points"},
+                                                              {"root", "--root"},
+                                                              {"tip", "--tip"}};
   for (const auto& [part, option] : kOptions)
     if (key.ends_with(part)) return option;
   return "--gear";
+}
+
+/// A gear whose numbers stand in a file: keys are those of the job.
+std::vector<Diagnostic> of_file(std::vector<Refusal> refusals, const char* option) {
+  std::vector<Diagnostic> errors;
+  for (Refusal& refusal : refusals) {
+    if (refusal.diagnostic.position.file.empty())
+      refusal.diagnostic.message = fmt::format("{}: {}", option, refusal.diagnostic.message);
+    errors.push_back(std::move(refusal.diagnostic));
+  }
+  return errors;
 }
 
 template <typename Refusals>
@@ -80,11 +97,13 @@ double tip_diameter_mm(const cylindrical::CylindricalParameters& p) {
 
 Expected<ChosenGear, std::vector<Diagnostic>> choose_cylindrical(const Wishes& wishes) {
   auto made = cylindrical::CylindricalGear::make(cylindrical_parameters(wishes));
-  if (auto* refusals = made.refused()) return located(std::move(*refusals));
+  if (auto* refusals = made.refused())
+    return wishes.cylinder ? of_file(std::move(*refusals), "--rexs") : located(std::move(*refusals));
   const cylindrical::CylindricalGear& gear = made.value();
   const cylindrical::CylindricalZone& zone = gear.parameters().zones.front();
   ChosenGear chosen;
   chosen.diameter_mm = gear.tip_diameter();
+  if (wishes.cylinder) chosen.module_mm = gear.parameters().module_mm;
   chosen.facts = cylindrical_facts(gear);
   chosen.part = {0.5 * gear.tip_diameter(),
                  zone.from_mm,
@@ -116,6 +135,57 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_straight_bevel(const Wishes
                  std::max(front, back),
                  false,
                  finger_places(w.R_i, w.R_e, p.pitch_angle_rad, p.dedendum_mm),
+                 p.teeth};
+  return chosen;
+}
+
+Expected<ChosenGear, std::vector<Diagnostic>> choose_spiral_bevel(const Wishes& wishes) {
+  auto made = spiral_bevel::SpiralBevelGear::make(*wishes.spiral);
+  if (auto* refusals = made.refused()) return of_file(std::move(*refusals), "--rexs");
+  const spiral_bevel::SpiralBevelGear& gear = made.value();
+  const auto& p = gear.parameters();
+  const auto& ring = gear.space().outline();
+  ChosenGear chosen;
+  chosen.diameter_mm = 2 * ring.chart.r(ring.s_from, gear.space().tip(ring.s_from));
+  chosen.module_mm = gear.body().module_mm;
+  chosen.facts = spiral_bevel_facts(gear);
+  const auto [front, back] = tooth_space::body_ends(gear.space(), gear.body());
+  chosen.part = {0.5 * chosen.diameter_mm,
+                 std::min(front, back),
+                 std::max(front, back),
+                 false,
+                 finger_places(p.outer_cone_distance_mm - p.face_width_mm, p.outer_cone_distance_mm, p.pitch_angle_rad,
+                               chosen.facts.depth),
+                 p.teeth};
+  return chosen;
+}
+
+constexpr double kLaysDown =
+    0.05;  // sine of a lean: below it the axis of a gear by points is laid down as a cylinder's
+
+Expected<ChosenGear, std::vector<Diagnostic>> choose_flank_grid(const Wishes& wishes) {
+  auto made = flank_grid::FlankGridGear::make(*wishes.grid);
+  if (auto* refusals = made.refused()) return located(std::move(*refusals));
+  const flank_grid::FlankGridGear& gear = made.value();
+  const auto& p = gear.parameters();
+  const auto& chart = gear.space().outline().chart;
+  ChosenGear chosen;
+  chosen.module_mm = gear.module_mm();
+  chosen.facts = flank_grid_facts(gear);
+  double radius_mm = 0, low = INFINITY, high = -INFINITY;
+  for (const auto& line : {p.root, p.tip, gear.body()})
+    for (const Vec2& corner : line) {
+      radius_mm = std::max(radius_mm, corner.x());
+      low = std::min(low, corner.y());
+      high = std::max(high, corner.y());
+    }
+  chosen.diameter_mm = 2 * radius_mm;
+  chosen.part = {radius_mm,
+                 low,
+                 high,
+                 chart.cosine > -kLaysDown,
+                 meridian_places(0.5 * (p.root.front() + p.tip.front()), 0.5 * (p.root.back() + p.tip.back()),
+                                 {chart.sine, chart.cosine}, 0.5 * chosen.facts.depth),
                  p.teeth};
   return chosen;
 }
@@ -204,9 +274,13 @@ Result<Draft> face_draft(Draft draft, const ChosenMachine& machine, const Chosen
     return fail_as(DiagnosticKind::refused_input,
                    "{}: the largest ball that reaches all of the fillets and the root has {:.3f} mm, and no {} "
                    "is so small with flutes of {:.2f} mm; {} takes a larger ball",
-                   gear.face ? "--tip-radius" : "--module", gear.facts.largest_ball,
-                   draft.wishes.route == Route::line ? "tapered mill" : "ball mill", depth,
-                   gear.face ? "a larger rounding of the shaper's tip" : "a larger module");
+                   gear.face            ? "--tip-radius"
+                   : gear.module_mm > 0 ? "--tools"
+                                        : "--module",
+                   gear.facts.largest_ball, draft.wishes.route == Route::line ? "tapered mill" : "ball mill", depth,
+                   gear.face            ? "a larger rounding of the shaper's tip"
+                   : gear.module_mm > 0 ? "a larger fillet"
+                                        : "a larger module");
   draft.second = *mill;
   draft.depth_mm = depth;
   const tool::ToolAssembly* first =
@@ -253,6 +327,8 @@ Expected<ChosenMachine, std::vector<Diagnostic>> choose_machine(const Wishes& wi
 Expected<ChosenGear, std::vector<Diagnostic>> choose_gear(const Wishes& wishes) {
   if (wishes.gear == Gear::cylindrical) return choose_cylindrical(wishes);
   if (wishes.gear == Gear::straight_bevel) return choose_straight_bevel(wishes);
+  if (wishes.gear == Gear::spiral_bevel) return choose_spiral_bevel(wishes);
+  if (wishes.gear == Gear::flank_grid) return choose_flank_grid(wishes);
   return wishes.gear == Gear::bevel_herringbone ? choose_bevel(wishes) : choose_face(wishes);
 }
 
@@ -261,6 +337,8 @@ Result<Draft> draft_of(const std::string& name, const Wishes& wishes, const Chos
   Draft draft;
   draft.name = name;
   draft.wishes = wishes;
+  if (gear.module_mm > 0) draft.wishes[Quantity::module] = gear.module_mm;
+  draft.up = gear.part.up;
   draft.assumed = machine.assumed;
   draft.work_offset = machine.work_offset;
   if (wishes.route == Route::shaped) return draft;
@@ -272,7 +350,7 @@ Result<Draft> draft_of(const std::string& name, const Wishes& wishes, const Chos
 }
 
 std::optional<double> least_swing_mm(const Wishes& wishes) {
-  if (!wishes.gear) return std::nullopt;
+  if (!wishes.gear || *wishes.gear == Gear::spiral_bevel || *wishes.gear == Gear::flank_grid) return std::nullopt;
   if (*wishes.gear == Gear::cylindrical) {
     for (const Quantity known : {Quantity::teeth, Quantity::module, Quantity::helix, Quantity::profile_shift})
       if (!wishes[known]) return std::nullopt;
@@ -315,6 +393,11 @@ Told swing_of(const ChosenMachine& machine, double diameter_mm) {
 }
 
 Told limits_of(const Wishes& wishes) {
+  if (wishes.grid)
+    return {{"points",
+             fmt::format("{} rows x {} columns on each flank", wishes.grid->plus.rows, wishes.grid->plus.columns)},
+            {"tip, [r, z] at both ends", meridian_text(wishes.grid->tip)},
+            {"root", meridian_text(wishes.grid->root)}};
   const auto range = face_range(wishes);
   if (!range) return {};
   Told told = {{fmt::format("inner end ({})", range->inner_name), "from " + mm(range->inner)},

@@ -30,6 +30,7 @@ struct ChosenGear {
   FaceFacts facts;   ///< of a gear that ball mills make
   PartInSpace part;  ///< with its places of the tool
   double diameter_mm = 0;
+  double module_mm = 0;  ///< of a gear whose numbers stand in a file
 };
 /// Refused: all that the gear refuses, each with the option that it belongs to.
 [[nodiscard]] Expected<ChosenGear, std::vector<Diagnostic>> choose_gear(const Wishes& wishes);

@@ -6,12 +6,13 @@
 #include "app/proposal/gear_limits.h"
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/shaper.h"
+#include "geometry/flank_grid/point_order.h"
 
 namespace toothpath::proposal {
 namespace {
 
-constexpr std::string_view kGearWords[] = {"face",        "double_helical", "offset", "bevel_herringbone",
-                                           "cylindrical", "straight_bevel"};
+constexpr std::string_view kGearWords[] = {"face",        "double_helical", "offset",       "bevel_herringbone",
+                                           "cylindrical", "straight_bevel", "spiral_bevel", "flank_grid"};
 constexpr std::string_view kRouteWords[] = {"ball", "line", "shaped", "finger"};
 constexpr Route kFaceRoutes[] = {Route::line, Route::ball, Route::shaped};
 constexpr Route kDoubleRoutes[] = {Route::line, Route::ball};
@@ -41,6 +42,12 @@ constexpr Question kQuestions[] = {
     {Quantity::spiral, "--spiral", "spiral angle at the large end", {10, 45, " deg"}, false},
     {Quantity::face_width, "--face-width", "face width, of a bevel gear along the pitch cone", {1, 500, " mm"}, false},
     {Quantity::profile_shift, "--profile-shift", "profile shift in modules", {-2, 2}, false},
+    {Quantity::fillet_radius,
+     "--fillet-radius",
+     "radius of the ball that rolls between flank and root of a gear by points",
+     {0, 1000, " mm", true},
+     false},
+    {Quantity::bore, "--bore", "diameter of the bore of a gear by points; 0: none", {0, 2000, " mm"}, false},
 };
 
 constexpr double kRadiusStep = 0.25;  // mm, of proposed ends
@@ -106,7 +113,9 @@ std::span<const Route> routes_of(Gear gear) {
     case Gear::double_helical: return kDoubleRoutes;
     case Gear::bevel_herringbone: return kBevelRoutes;
     case Gear::cylindrical: return kBallRoutes;
-    case Gear::straight_bevel: return kStraightBevelRoutes;
+    case Gear::straight_bevel:
+    case Gear::spiral_bevel:
+    case Gear::flank_grid: return kStraightBevelRoutes;
   }
   return {};
 }
@@ -117,6 +126,10 @@ std::string_view word_of(Route route) { return kRouteWords[static_cast<std::size
 std::span<const Question> questions() { return kQuestions; }
 
 bool belongs(const Question& question, Gear gear) {
+  if (gear == Gear::spiral_bevel) return false;
+  const bool by_points = question.what == Quantity::fillet_radius || question.what == Quantity::bore;
+  if (gear == Gear::flank_grid || by_points)
+    return gear == Gear::flank_grid && (by_points || question.what == Quantity::teeth);
   const bool herringbone = gear == Gear::bevel_herringbone, cylindrical = gear == Gear::cylindrical,
              bevel = herringbone || gear == Gear::straight_bevel;
   switch (question.what) {
@@ -133,6 +146,8 @@ bool belongs(const Question& question, Gear gear) {
     case Quantity::tip_radius:
     case Quantity::inner:
     case Quantity::outer: return !bevel && !cylindrical;
+    case Quantity::fillet_radius:
+    case Quantity::bore: break;
   }
   return false;
 }
@@ -143,6 +158,12 @@ std::optional<double> proposed(Quantity quantity, const Wishes& wishes) {
     case Quantity::teeth:
     case Quantity::mate_teeth:
     case Quantity::module: return std::nullopt;
+    case Quantity::fillet_radius: {
+      if (!wishes.grid) return std::nullopt;
+      const flank_grid::MeridianProposal meridians({wishes.grid->plus, wishes.grid->minus});
+      return std::floor(1e3 * meridians.fillet_radius_mm(wishes.grid->root)) / 1e3;
+    }
+    case Quantity::bore: return 0.0;
     case Quantity::shaper_teeth: return std::clamp(std::round(2.6 * std::sqrt(teeth)), 16.0, 100.0);
     case Quantity::pressure_angle: return 20.0;
     case Quantity::helix: return wishes.gear == Gear::double_helical ? helix_with_room(wishes) : 0.0;

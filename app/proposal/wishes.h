@@ -3,15 +3,28 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "geometry/cylindrical/parameters.h"
+#include "geometry/flank_grid/parameters.h"
+#include "geometry/spiral_bevel/parameters.h"
 #include "machines/toml/table_reader.h"
 
 namespace toothpath::proposal {
 
-enum class Gear : std::uint8_t { face, double_helical, offset, bevel_herringbone, cylindrical, straight_bevel };
+enum class Gear : std::uint8_t {
+  face,
+  double_helical,
+  offset,
+  bevel_herringbone,
+  cylindrical,
+  straight_bevel,
+  spiral_bevel,  ///< its settings stand in a file
+  flank_grid,    ///< so do its points
+};
 enum class Route : std::uint8_t {
   ball,    ///< ball mills alone
   line,    ///< flanks by the side of a tapered mill
@@ -43,8 +56,10 @@ enum class Quantity : std::uint8_t {
   spiral,
   face_width,
   profile_shift,
+  fillet_radius,
+  bore,
 };
-inline constexpr std::size_t kQuantities = 13;
+inline constexpr std::size_t kQuantities = 15;
 
 /// mm and deg, as a job says them.
 struct Wishes {
@@ -52,6 +67,13 @@ struct Wishes {
   std::optional<Route> route;
   std::string machine;  ///< as a job names it
   std::array<std::optional<double>, kQuantities> numbers{};
+
+  // Gears whose numbers stand in a file.
+  std::shared_ptr<const cylindrical::CylindricalParameters> cylinder = {};
+  std::shared_ptr<const spiral_bevel::SpiralBevelParameters> spiral = {};
+  std::shared_ptr<const flank_grid::FlankGridParameters> grid = {};
+  std::string points_file = {};                                    ///< of the grid, as the job names it
+  [[nodiscard]] bool whole() const { return cylinder || spiral; }  ///< nothing of the gear is asked for
 
   [[nodiscard]] std::optional<double>& operator[](Quantity q) { return numbers[static_cast<std::size_t>(q)]; }
   [[nodiscard]] std::optional<double> operator[](Quantity q) const { return numbers[static_cast<std::size_t>(q)]; }

@@ -44,6 +44,11 @@ void take_tool(const RexsFile& file, const Component& flank, const Said& said, c
     p.root_radius_coefficient = said.root_radius_coefficient.value_or(0.38);
     return;
   }
+  if (said.dedendum_coefficient || said.root_radius_coefficient)
+    return refused.add(step.tool->at,
+                       "{} says the reference profile: --dedendum-coefficient and --root-radius-coefficient are for "
+                       "gears without a tool",
+                       step.tool->title());
   if (step.tool->type != "rack_shaped_tool")
     return refused.add(step.tool->at, "{} makes {}: only a rack_shaped_tool is read", step.tool->title(),
                        flank.title());
@@ -108,7 +113,10 @@ cylindrical::CylindricalParameters cylindrical_of(const RexsFile& file, const Co
                 profile.shift);
   p.pressure_angle_rad = radians(profile.pressure_angle);
   p.profile_shift = profile.shift;
-  take_tool(file, *flanks.left, said, p, refused);
+  if (step_of(file, *flanks.left).tool != step_of(file, *flanks.right).tool)
+    refused.add(flanks.right->at, "{} is not made by the tool of {}: one tool must make both flanks",
+                flanks.right->title(), flanks.left->title());
+  else take_tool(file, *flanks.left, said, p, refused);
   const double d = p.module_mm * p.teeth / std::cos(helix);
   p.tip_diameter_mm = q.optional("tip_diameter", Unit::mm, kLength);
   if (p.tip_diameter_mm && *p.tip_diameter_mm <= d + 2 * p.module_mm * (p.profile_shift - 0.9))

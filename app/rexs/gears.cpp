@@ -79,7 +79,13 @@ Expected<GearOfFile, Obstacles> gear_of(const RexsFile& file, const Component& g
   Refused refused;
   Obstacles obstacles;
   GearOfFile out;
-  if (gear.type == "bevel_gear") out.gear = spiral_bevel_of(file, gear, said, refused, obstacles);
+  const bool bevel = gear.type == "bevel_gear";
+  if (!bevel && (said.left_is_concave || said.work_per_cradle))
+    refused.add(gear.at, "{}: --left-flank and --ratio-of-roll are for bevel gears", gear.title());
+  if (bevel && (said.dedendum_coefficient || said.root_radius_coefficient))
+    refused.add(gear.at, "{}: --dedendum-coefficient and --root-radius-coefficient are for cylindrical gears",
+                gear.title());
+  if (bevel) out.gear = spiral_bevel_of(file, gear, said, refused, obstacles);
   else out.gear = cylindrical_of(file, gear, said, refused);
   obstacles.errors = std::move(refused.errors);
   if (!obstacles.errors.empty() || !obstacles.questions.empty()) return obstacles;

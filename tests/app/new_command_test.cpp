@@ -170,6 +170,39 @@ TEST(New, RefusesWithTheOptionAndItsLimit) {
   EXPECT_NE(err(gear("face", "ball", "t600s", {"--teeth", "200", "--module", "2"})).find("250"), std::string::npos);
 }
 
+TEST(New, FilesOfPointsAndOfRexsAreAskedForByTheirOptions) {
+  const TestDir dir;
+  const std::string tree = TOOTHPATH_SOURCE_DIR, points = tree + "/samples/flank_grid_spur.csv",
+                    pair = tree + "/tests/rexs/bevel_pair.rexs";
+  const std::pair<Words, const char*> cases[] = {
+      {{"--gear", "flank_grid"}, "error: --points is missing: "},
+      {{"--points", points}, "error: --teeth is missing: "},
+      {{"--points", points, "--teeth", "200"}, "error: --points-unit is missing, mm or inch: "},
+      {{"--points", points, "--teeth", "24", "--root", "1 2 3"}, "error: --root = \"1 2 3\": two places"},
+      {{"--points", points, "--teeth", "24", "--fillet-radius", "9"},
+       "error: --fillet-radius: fillet_radius = 9.0000 mm"},
+      {{"--points", points, "--teeth", "24", "--module", "3"}, "error: --module does not belong to --gear flank_grid"},
+      {{"--points", points, "--gear", "face"}, "error: --points does not belong to --gear face"},
+      {{"--points", pair}, "bevel_pair.rexs:1:1: error: "},
+      {{"--gear", "spiral_bevel"}, "error: --rexs is missing: "},
+      {{"--rexs", pair}, "bevel_pair.rexs has bevel_gear 2 (Pinion), bevel_gear 9 (Gear)"},
+      {{"--rexs", pair, "--component", "3"}, "error: --component = 3 is no gear of "},
+      {{"--rexs", pair, "--component", "2"}, "error: --left-flank is missing, concave or convex: "},
+      {{"--rexs", pair, "--component", "2", "--left-flank", "inner"}, "error: --left-flank = inner is neither"},
+      {{"--rexs", pair, "--component", "9", "--teeth", "36"}, "error: --teeth does not belong to --rexs"},
+      {{"--rexs", pair, "--component", "9", "--gear", "face"}, "error: --gear face: that of --rexs is spiral_bevel"},
+      {{"--rexs", points}, "error: no XML: No document"},
+      {{"--component", "2"}, "error: --component does not belong to a job without --rexs"},
+  };
+  for (auto [words, error] : cases) {
+    words.insert(words.end(), {"--machine", "xyzac_large"});
+    const Finished made = run_new(words, dir / "job.toml");
+    EXPECT_NE(made.exit_code, 0) << joined(words);
+    EXPECT_NE(made.err.find(error), std::string::npos) << joined(words) << "\n" << made.err;
+    EXPECT_TRUE(names_in(dir.path()).empty()) << joined(words);
+  }
+}
+
 TEST(New, NeverReplacesAFile) {
   const TestDir dir;
   write_file(dir / "job.toml", "mine\n");

@@ -11,6 +11,8 @@
 #include "app/job/measured_points.h"
 #include "app/job/measured_setup.h"
 #include "app/probing/touch_file.h"
+#include "app/proposal/points_gear.h"
+#include "app/rexs/gears.h"
 #include "app/studies/dhfg.h"
 #include "app/studies/errors/head.h"
 #include "app/studies/errors/summary.h"
@@ -262,6 +264,43 @@ std::vector<ByteReader> tool_library_readers() {
   return readers;
 }
 
+/// REXS files, and what becomes of every gear in them.
+ByteReader rexs_reader() {
+  static constexpr rexs::Said kSaid{true, true, {}, {}};
+  return {"rexs",
+          "0123456789.-<>\"/= acdefgimnrtu",
+          {file_text(kSource / "tests/rexs/bevel_pair.rexs"), file_text(kSource / "tests/rexs/cylinders.rexs")},
+          [](std::string_view bytes) {
+            const auto file = rexs::parse_rexs(bytes, "g.rexs");
+            if (!file) return fault_of(file);
+            for (const rexs::Component* gear : rexs::gears_of(*file)) {
+              const auto made = rexs::gear_of(*file, *gear, gear->type == "bevel_gear" ? kSaid : rexs::Said{});
+              if (auto fault = fault_of(made ? std::vector<Diagnostic>{} : made.error().errors, made.has_value());
+                  !fault.empty())
+                return fault;
+            }
+            return std::string();
+          }};
+}
+
+/// Points of a gear in any order, put onto their grids.
+ByteReader loose_points_reader() {
+  static const TestDir dir;
+  const std::string named = file_text(kSource / "samples/flank_grid_spur.csv");
+  std::string plain = "x y z i j k\n";
+  std::istringstream lines(named.substr(named.find('\n') + 1));
+  for (std::string line; std::getline(lines, line);)
+    plain += line.substr(line.find(',', line.find(',', line.find(',') + 1) + 1) + 1) + "\n";
+  return {"loose_points",
+          "0123456789.,;-+eE\n",
+          {named, plain},
+          [](std::string_view bytes) {
+            write_file(dir / "p.txt", std::string(bytes));
+            return fault_of(proposal::read_points(dir / "p.txt", {}));
+          },
+          20};  // each writes a file
+}
+
 std::string box_stl() {
   mesh::TriangleMesh box;
   for (int k = 0; k < 8; ++k) box.vertices.emplace_back(k & 1 ? 20 : 0, k & 2 ? 30 : 0, k & 4 ? 40 : 0);
@@ -340,9 +379,9 @@ std::vector<ByteReader> gearbox_readers() {
 }
 
 std::vector<ByteReader> all_readers() {
-  std::vector<ByteReader> readers = {job_reader(),      machine_reader(),  shaper_machine_reader(),
-                                     meridian_reader(), measured_reader(), grid_reader(),
-                                     touches_reader(),  shards_reader(),   study_reader()};
+  std::vector<ByteReader> readers = {job_reader(),      machine_reader(), shaper_machine_reader(), meridian_reader(),
+                                     measured_reader(), grid_reader(),    touches_reader(),        shards_reader(),
+                                     study_reader(),    rexs_reader(),    loose_points_reader()};
   for (const auto& group :
        {measured_points_readers(), tool_library_readers(), mesh_readers(), nc_readers(), gearbox_readers()})
     readers.insert(readers.end(), group.begin(), group.end());
