@@ -1,6 +1,7 @@
 #include "app/commands/contact.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <tuple>
 
@@ -10,6 +11,7 @@
 #include "app/job/measured_points.h"
 #include "app/process/flow/cut_flanks.h"
 #include "app/process/flow/stages.h"
+#include "app/process/toothed_pair/contact.h"
 #include "geometry/base/printable.h"
 
 namespace toothpath::commands {
@@ -32,6 +34,8 @@ Status check_request(const ContactRequest& r) {
   if (r.as_cut && !r.measured.files.empty())
     return usage("--as-cut and --measured contradict each other: one surface is rolled beside the exact one");
   if (r.measured.files.empty() && r.measured.ball_diameter_mm) return usage("--ball-diameter belongs to --measured");
+  if (r.other_job.empty() && (r.shaft_angle_deg || r.axis_distance_mm))
+    return usage(fmt::format("{} belongs to --mate", r.shaft_angle_deg ? "--shaft-angle" : "--axis-distance"));
   if (!r.optimise && (!r.modify.empty() || !r.write_file.empty()))
     return usage(fmt::format("{} belongs to --optimise", r.modify.empty() ? "--write" : "--modify"));
   if (!r.modify.empty() && std::find(std::begin(process::kModifiable), std::end(process::kModifiable), r.modify) ==
@@ -54,6 +58,35 @@ Status check_request(const ContactRequest& r) {
   return Ok{};
 }
 
+/// The gear of another job that a gear is rolled with, and how both stand; the gear keeps a reference to its job.
+struct Mate {
+  std::unique_ptr<const job::Job> job;
+  std::unique_ptr<process::GearProcess> gear;
+  toothed_pair::Shafts shafts;
+};
+/// Nothing: the gear rolls with a mate of its own rules.
+process::ValueOrErrors<std::optional<Mate>> mate_of(const ContactRequest& request, const job::Job& job,
+                                                    const process::GearProcess& gear, app::StageClock& clock) {
+  std::optional<Mate> out;
+  if (request.other_job.empty() || job.bevel_gear() != nullptr) {
+    if (auto accepted = gear.accepts(request); !accepted) return std::vector{accepted.error()};
+    return out;
+  }
+  auto read = clock.run("mate", [&] { return job::read_job_file(request.other_job); });
+  if (auto* errors = read.refused()) return std::move(*errors);
+  out.emplace(Mate{std::make_unique<const job::Job>(std::move(read).value()), nullptr, {}});
+  auto made = flow::make_gear(*out->job, {}, clock);
+  if (auto* errors = made.refused()) return std::move(*errors);
+  out->gear = std::move(made.value().process);
+  if (out->job->bevel_gear() != nullptr)
+    return std::vector{
+        fail_at(out->job->where("gear.type"), "type = \"{}\" rolls with its own type alone", out->job->gear_type())};
+  auto shafts = toothed_pair::accepted({job, gear.toothed()}, {*out->job, out->gear->toothed()}, request);
+  if (auto* errors = shafts.refused()) return std::move(*errors);
+  out->shafts = shafts.value();
+  return out;
+}
+
 }  // namespace
 
 CommandOutcome run_contact(const ContactRequest& request) {
@@ -70,14 +103,24 @@ CommandOutcome run_contact(const ContactRequest& request) {
   auto made = flow::make_gear(job, {}, clock);
   if (auto* errors = made.refused()) return failed(std::move(*errors));
   const process::GearProcess& gear = *made.value().process;
-  if (const auto accepted = gear.accepts(request); !accepted) return failed(accepted.error());
+  auto read_mate = mate_of(request, job, gear, clock);
+  if (auto* errors = read_mate.refused()) return failed(std::move(*errors));
+  const std::optional<Mate>& mate = read_mate.value();
   std::optional<process::CutFlanks> cut;
   if (request.as_cut) {
     auto flanks = flow::cut_flanks(job, {kCutRows, kCutColumns}, *output, request.quiet);
     if (auto* errors = flanks.refused()) return failed(std::move(*errors));
     cut = std::move(flanks).value();
   }
-  auto rolled = gear.contact(request, cut ? &*cut : nullptr, clock);
+  if (mate && !request.measured.files.empty()) {
+    auto flanks = clock.run("measured", [&] { return gear.measured(request.measured); });
+    if (auto* errors = flanks.refused()) return failed(std::move(*errors));
+    cut = std::move(flanks).value();
+  }
+  const process::CutFlanks* as_cut = cut ? &*cut : nullptr;
+  auto rolled = mate ? toothed_pair::roll_pair({job, gear.toothed()}, {*mate->job, mate->gear->toothed()}, mate->shafts,
+                                               request, as_cut, clock)
+                     : gear.contact(request, as_cut, clock);
   if (auto* errors = rolled.refused()) return failed(std::move(*errors));
   process::ContactFound found = std::move(rolled).value();
   if (!request.ccx_dir.empty()) {
@@ -115,7 +158,14 @@ void add_contact(Commands& commands) {
         set.number("--compound", request.compound_um, "thickness of the marking compound (default 6)",
                    {app::um(job::kCompound.low), app::um(job::kCompound.high), " um"});
         set.text("--mate", request.other_job,
-                 "bevel gears: job of the mate (default: by the rules of the pair, same mill)", "JOB");
+                 "job of the mate, any gear that meshes with this one (default: face gears the pinion of their shaper; "
+                 "equal-base-circle bevel gears by the rules of the pair, same mill)",
+                 "JOB");
+        set.number("--shaft-angle", request.shaft_angle_deg,
+                   "with --mate: between the axes of both gears, where their keys do not say it", {0, 180, " deg"});
+        set.number("--axis-distance", request.axis_distance_mm,
+                   "with --mate: distance of the axes (default: cylindrical gears without backlash; bevel gears 0)",
+                   {-10000, 10000, " mm"});
         set.number("--wheel-axial-error", request.wheel_axial_error_mm,
                    "gear, or wheel of a bevel pair, off its place along its axis, away from its mate", job::kMoved);
         set.number("--torque", request.torque_Nm, "load the elastic pair, too: torque on the gear",

@@ -62,12 +62,7 @@ void read_job(toml::TableReader& root, Job& job) {
   if (auto table = root.table("machine")) job.machine = read_machine_choice(*table);
   if (auto table = root.table("setup")) job.setup = read_setup(*table, job);
   if (auto table = root.table("shaping")) job.shaping = read_shaping(*table);
-  if (!job.face_gear() && !job.bevel_gear()) {
-    if (root.misplaced("contact"))
-      root.refuse("contact", "[contact] is not there yet for a {}: leave it out", job.gear_type());
-  } else if (auto table = root.table("contact")) {
-    job.contact = read_contact(*table, job);
-  }
+  if (auto table = root.table("contact")) job.contact = read_contact(*table, job);
   if (auto table = root.table("coolant")) job.coolant = read_coolant(*table);
   if (auto table = root.table("material")) job.material = read_material(*table);
   if (auto table = root.table("verify")) job.verify = read_verify(*table);

@@ -430,7 +430,12 @@ ContactSettings read_contact(toml::TableReader& table, const Job& job) {
                  "own: [[gear.modification]] there, and --mate",
                  job.gear_type());
   if (auto box = table.table("misalignment")) c.box = read_misalignment(*box);
-  if (auto load = table.table("load")) c.load = read_contact_load(*load, job);
+  if (!job.face_gear() && !job.bevel_gear()) {
+    if (table.misplaced("load"))
+      table.refuse("load", "load: there is no elastic model of a {}: leave it out", job.gear_type());
+  } else if (auto load = table.table("load")) {
+    c.load = read_contact_load(*load, job);
+  }
   table.finish();
   return c;
 }

@@ -1,6 +1,8 @@
 // The flanks of one tooth as they were cut, by whichever route.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +34,13 @@ struct CutFlanks {
 /// "as cut"; "measured" where the flanks are those of a measurement.
 [[nodiscard]] inline const char* words_of_route(const std::string& route) {
   return route == "measured" ? "measured" : "as cut";
+}
+
+/// How well the fit of a measured flank meets its places.
+template <typename Residual>
+[[nodiscard]] std::string words_of_fit(int zone, int side, const Residual& residual) {
+  return fmt::format("zone {}, flank {:+}: {} measured places up to {:.2f} um off, met by the fit within {:.2f} um",
+                     zone, side, residual.points, 1000 * residual.measured_max_mm, 1000 * residual.residual_max_mm);
 }
 
 /// Flank patches of a cut surface after the last operation.

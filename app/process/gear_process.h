@@ -40,6 +40,9 @@
 #include "machines/machine.h"
 #include "postproc/joints/program.h"
 
+namespace toothpath::tooth_space {
+class ToothedPart;
+}
 namespace toothpath::process {
 
 /// What every stage may want to know of the finished part; lengths in mm.
@@ -107,18 +110,19 @@ struct Correction {
 struct ContactAsked {
   std::optional<int> pinion_teeth;
   std::optional<double> offset_error_mm, angle_error_deg, axial_error_mm, compound_um;
-  std::optional<double> wheel_axial_error_mm;  ///< of the gear, or of the wheel of a bevel pair
-  std::string other_job;                       ///< bevel gears: the mate
-  std::optional<double> torque_Nm;             ///< load the pair, too
-  bool torque_on_pinion = false;               ///< that torque is the pinion's
-  bool pinion_held = false;                    ///< along its axis, where it would float
-  std::optional<int> positions;                ///< of the loaded pair over a pitch
-  std::string ccx_dir;                         ///< where decks of CalculiX go; empty: none
-  bool as_cut = false;                         ///< the surface that the job's operations cut, too
-  job::MeasuredInput measured = {};            ///< or the one that was measured
-  bool optimise = false;                       ///< seek crownings and reliefs for the box of misalignments
-  std::string modify;                          ///< whose flanks they may take: a word of kModifiable; empty: any
-  std::string write_file;                      ///< where the job with what was found goes; empty: nowhere
+  std::optional<double> wheel_axial_error_mm;               ///< of the gear, or of the wheel of a bevel pair
+  std::string other_job;                                    ///< the mate
+  std::optional<double> shaft_angle_deg, axis_distance_mm;  ///< of two jobs whose keys do not say them
+  std::optional<double> torque_Nm;                          ///< load the pair, too
+  bool torque_on_pinion = false;                            ///< that torque is the pinion's
+  bool pinion_held = false;                                 ///< along its axis, where it would float
+  std::optional<int> positions;                             ///< of the loaded pair over a pitch
+  std::string ccx_dir;                                      ///< where decks of CalculiX go; empty: none
+  bool as_cut = false;                                      ///< the surface that the job's operations cut, too
+  job::MeasuredInput measured = {};                         ///< or the one that was measured
+  bool optimise = false;                                    ///< seek crownings and reliefs for the box of misalignments
+  std::string modify;      ///< whose flanks they may take: a word of kModifiable; empty: any
+  std::string write_file;  ///< where the job with what was found goes; empty: nowhere
 };
 /// Whose flanks `contact --optimise` may modify.
 inline constexpr std::string_view kModifiable[] = {"gear", "pinion", "both"};
@@ -180,6 +184,14 @@ class GearProcess {
   [[nodiscard]] virtual ValueOrErrors<CutFlanks> shaped(const FlankGrid& grid) const = 0;
   /// What a probe may touch of it, teeth and blank. The gear must outlive it.
   [[nodiscard]] virtual std::unique_ptr<inspection::TouchedPart> touched() const = 0;
+  /// Its teeth with the flanks to aim at, to roll with those of another job; null: a gear type that rolls with mates of
+  /// its own alone.
+  [[nodiscard]] virtual std::shared_ptr<const tooth_space::ToothedPart> toothed() const { return nullptr; }
+  /// The flanks of toothed() as measured files tell of them: the fit of their deviations. Refused: what the files
+  /// refuse; a gear type that has no toothed().
+  [[nodiscard]] virtual ValueOrErrors<CutFlanks> measured(const job::MeasuredInput& /*measured*/) const {
+    return std::vector{fail("such flanks are measured in another way")};
+  }
   /// Refused, at gear.type: what is asked and this gear type does not have.
   [[nodiscard]] virtual Status accepts(const ContactAsked& asked) const = 0;
   /// The gear and its mate rolled. @param cut flanks as they were cut, beside the exact ones; may be null. Refused: a

@@ -20,6 +20,14 @@ double end_of_flank(const ToothSpace& space, tooth_space::Piece piece) {
   return std::isfinite(b.from) ? b.from : b.to;
 }
 
+/// Does column 0, at the end of the teeth nearer to the axis, lie at s_from? On a cylinder that is the lower end.
+bool begins_at_from(const ToothSpace& space) {
+  const tooth_space::Outline& ring = space.outline();
+  const double wider =
+      ring.chart.r(ring.s_to, space.tip(ring.s_to)) - ring.chart.r(ring.s_from, space.tip(ring.s_from));
+  return std::abs(wider) > 1e-6 * (ring.s_to - ring.s_from) ? wider > 0 : ring.sign > 0;
+}
+
 }  // namespace
 
 bool SpaceFlank::exact() const {
@@ -47,7 +55,7 @@ double SpaceFlank::low(double s) const {
 double SpaceFlank::column_share(double s) const {
   const tooth_space::Outline& ring = space->outline();
   const double share = (s - ring.s_from) / (ring.s_to - ring.s_from);
-  return ring.sign > 0 ? share : 1 - share;
+  return begins_at_from(*space) ? share : 1 - share;
 }
 
 Vec2 SpaceFlank::shares(double s, double h) const {
@@ -86,7 +94,7 @@ Result<SpaceFlank> space_flank(const ToothSpace& space, int zone, int side, int 
   const tooth_space::Outline& ring = space.outline();
   const double end = end_of_flank(space, flank.piece);
   for (int c = 0; c < columns; ++c) {
-    const double share = double(ring.sign > 0 ? c : columns - 1 - c) / (columns - 1),
+    const double share = double(begins_at_from(space) ? c : columns - 1 - c) / (columns - 1),
                  s = ring.s_from + (ring.s_to - ring.s_from) * share;
     const auto tip = space.tip_edge(side, s);
     const auto low_v = tooth_space::v_at(space, flank.piece, end, s);

@@ -121,7 +121,7 @@ class TouchSearch {
   }
 
  private:
-  /// Rows of a column that are on the pinion's involute, and the best of them; -1: none.
+  /// Rows of a column that are on the mate's flank, and the best of them; -1: none.
   struct Rows {
     int first = -1, last = -1, best = -1;
     double value = kNever;
@@ -163,7 +163,7 @@ class TouchSearch {
     return row < 0 ? kNever : member_.asked_turn(turn_(point_at(row, column)), phi_2_);
   }
   /// Highest asked turn of a node column: the parabola through the best node and its neighbours, or the edge of the
-  /// pinion's involute.
+  /// mate's flank.
   [[nodiscard]] double estimate(int c) const {
     const double row = row_of(c, false);
     if (row < 0) return kNever;
@@ -184,7 +184,7 @@ class TouchSearch {
       for (int r = 0; r < flank_.rows; ++r) rows.take(r, value_at(r, column));
       return rows;
     }
-    const auto there = [&](int r) { return r >= 0 && r < flank_.rows && on_pinion(r, column); };
+    const auto there = [&](int r) { return r >= 0 && r < flank_.rows && on_mate(r, column); };
     const auto end_from = [&](int r, int way) {  // the last row that way, from one that is near it
       if (!there(r)) do
           r -= way;
@@ -205,12 +205,12 @@ class TouchSearch {
     while (rows.best == high && high < rows.last) take(++high);
     return rows;
   }
-  /// The best row of a column; with `refine` between the nodes. -1: none is within the pinion's involute.
+  /// The best row of a column; with `refine` between the nodes. -1: none is within the mate's flank.
   [[nodiscard]] double row_of(double column, bool refine) const {
     const int c0 = std::clamp(static_cast<int>(column), 0, flank_.columns - 1);
     const Rows rows = column == c0 ? columns_[static_cast<std::size_t>(c0)] : rows_between(c0, column);
     if (rows.best < 0) return -1;
-    // Where the pinion's involute ends between two nodes its edge is a place of its own.
+    // Where the mate's flank ends between two nodes its edge is a place of its own.
     const double low = rows.first > 0 ? edge(column, rows.first, rows.first - 1) : 0;
     const double high = rows.last + 1 < flank_.rows ? edge(column, rows.last, rows.last + 1) : flank_.rows - 1;
     double row = rows.best;
@@ -222,12 +222,12 @@ class TouchSearch {
       if (const double at_end = value_at(end, column); at_end > value) row = end, value = at_end;
     return row;
   }
-  [[nodiscard]] bool on_pinion(double row, double column) const { return inside_by(row, column) >= 0; }
+  [[nodiscard]] bool on_mate(double row, double column) const { return inside_by(row, column) >= 0; }
   /// By how much the place lies inside the mate's flank, mm; below 0 outside.
   [[nodiscard]] double inside_by(double row, double column) const {
     return member_.inside_by(turn_(point_at(row, column)));
   }
-  /// Row between `inside` and `outside` where the pinion's involute ends, on the inside, to 1e-12 mm or rows.
+  /// Row between `inside` and `outside` where the mate's flank ends, on the inside, to 1e-12 mm or rows.
   [[nodiscard]] double edge(double column, double inside, double outside) const {
     return last_inside([&](double row) { return inside_by(row, column); }, inside, outside, 1e-12);
   }

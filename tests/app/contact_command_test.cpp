@@ -173,6 +173,80 @@ TEST(ContactCommand, AMeasuredCrowningRollsLikeTheDrawnOne) {
   EXPECT_NE(bevel.err.find("measured.csv:2:3: error: flank = \"1\" must be L or U"), std::string::npos) << bevel.err;
 }
 
+/// Two jobs, two gears: the double helical face gear with its milled pinion, whichever of the two is asked, and two
+/// spur gears at any distance. One writer for all pairs.
+TEST(ContactCommand, TwoJobsRoll) {
+  const TestDir dir;
+  const std::string face = kSamples + "/dhfg_paper.toml", pinion = kSamples + "/cylindrical_pinion.toml",
+                    spur = kSamples + "/cylindrical_spur.toml";
+  const Json report = contact_of({"contact", pinion, "--mate", face, "--out", dir / "face"});
+  EXPECT_EQ(names_in(dir / "face"), (std::vector<std::string>{"contact.csv", "contact.html", "contact.json",
+                                                              "ease_off.csv", "transmission.csv"}));
+  EXPECT_EQ(report.at("mate"), face);
+  EXPECT_EQ(report.at("gear_teeth"), 180);
+  for (const Json& flank : report.at("flanks")) {
+    EXPECT_EQ(flank.at("contact"), "conjugate");
+    EXPECT_LT(flank.at("transmission_error").at("range_um").get<double>(), 1e-5);
+    EXPECT_EQ(flank.at("zones").size(), 2u);
+  }
+  std::vector<double> ratios;
+  for (const std::string distance : {"73.2", "73.8"}) {
+    const Json pair = contact_of({"contact", spur, "--mate", spur, "--axis-distance", distance, "--out", dir / "spur"});
+    EXPECT_NEAR(pair.at("shafts").at("distance_mm").get<double>(), std::stod(distance), 1e-12);
+    EXPECT_LT(pair.at("flanks")[0].at("transmission_error").at("range_urad").get<double>(), 1e-5);
+    ratios.push_back(pair.at("flanks")[0].at("contact_ratio").get<double>());
+  }
+  EXPECT_GT(ratios[0], ratios[1] + 0.05);
+}
+
+/// Measured flanks that are too thick by the same everywhere are as conjugate as drawn ones, and turn the pair.
+TEST(ContactCommand, AMeasuredFlankRollsWithTheMateOfAnotherJob) {
+  const TestDir dir;
+  const std::string spur = kSamples + "/cylindrical_spur.toml";
+  ASSERT_EQ(run_program({"surface", spur, "--out", dir / "surface"}).exit_code, 0);
+  std::istringstream drawn(file_text(dir / "surface/inspection.csv"));
+  std::string line, text;
+  while (std::getline(drawn, line)) text += line + (text.empty() ? ",deviation_um\n" : ",10\n");
+  write_file(dir / "measured.csv", text);
+  const Json report =
+      contact_of({"contact", spur, "--mate", spur, "--measured", dir / "measured.csv", "--out", dir / "out"});
+  EXPECT_EQ(report.at("cut_surface"), "measured");
+  ASSERT_EQ(report.at("flanks").size(), 4u);
+  const auto error = [&](std::size_t k, const char* what) {
+    return report.at("flanks")[k].at("transmission_error").at(what).get<double>();
+  };
+  EXPECT_LT(error(2, "range_urad"), 1e-3);
+  EXPECT_NEAR(error(0, "mean_urad") - error(2, "mean_urad"), 1e4 / (36 * std::cos(20 * std::acos(-1) / 180)), 1e-2);
+}
+
+/// What two jobs do not say, and what such pairs do not have, with the place.
+TEST(ContactCommand, TwoJobsThatDoNotRoll) {
+  const TestDir dir;
+  const std::string spur = kSamples + "/cylindrical_spur.toml", cone = kSamples + "/straight_bevel.toml",
+                    grid = kSamples + "/flank_grid_spur.toml", spiral = kSamples + "/spiral_bevel.toml";
+  const std::tuple<int, std::vector<std::string>, std::string> refused[] = {
+      {3, {spur}, "rolls with a mate that has a job of its own: --mate JOB is needed"},
+      {2, {spur, "--axis-distance", "72"}, "--axis-distance belongs to --mate"},
+      {3, {spur, "--mate", spur, "--torque", "100"}, "there is no elastic model of such pairs"},
+      {3, {spur, "--mate", spur, "--optimise"}, "--optimise knows face gears"},
+      {3, {spur, "--mate", spur, "--pinion-teeth", "20"}, "--pinion-teeth contradicts the mate"},
+      {3, {spur, "--mate", spur, "--shaft-angle", "10"}, "rolled on parallel shafts alone"},
+      {3, {spur, "--mate", spur, "--axis-distance", "200"}, "come to each other in no turn"},
+      {3, {spur, "--mate", cone}, "does not run with a"},
+      {3, {spiral, "--mate", cone}, "do not roll on each other with"},
+      {3, {grid, "--mate", cone}, "--shaft-angle DEG is needed"},
+      {3, {spiral, "--mate", kSamples + "/bevel_wheel.toml"}, "rolls with its own type alone"},
+      {3, {kSamples + "/dhfg_paper.toml", "--mate", cone}, "does not run with a face gear"}};
+  for (const auto& [code, words, said] : refused) {
+    std::vector<std::string> arguments = {"contact", "--out", dir / "out"};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    const Finished run = run_program(arguments);
+    EXPECT_EQ(run.exit_code, code) << said;
+    EXPECT_NE(run.err.find(said), std::string::npos) << run.err;
+    EXPECT_EQ(run.err.find(".toml:") != std::string::npos, code == 3) << run.err;
+  }
+}
+
 /// A contact run that fails, however it does, leaves what an earlier one wrote as it was and says so, and nothing
 /// half-written; what belongs to others stays.
 TEST(ContactCommand, AFailedRunLeavesEverythingAsItWas) {

@@ -8,6 +8,10 @@
 
 namespace toothpath::face {
 
+/// The flanks as files of measurements tell of them: the fit of their deviations, on the grid of the roll.
+[[nodiscard]] process::ValueOrErrors<process::CutFlanks> measured_flanks(const face_gear::FaceGear& gear,
+                                                                         const job::MeasuredInput& measured);
+
 /// contact.csv, ease_off.csv, transmission.csv, contact.json and contact.html. Refused: a pinion that cannot run.
 [[nodiscard]] process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job,
                                                                       const face_gear::FaceGear& gear,

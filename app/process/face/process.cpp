@@ -116,10 +116,18 @@ class FaceProcess final : public process::GearProcess {
     return std::make_unique<inspection::TouchedTeeth>(drawn_solid(gear_), gear_.parameters().allowance_top_mm);
   }
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
-    if (!asked.other_job.empty())
-      return fail_at(job_.where("gear.type"), "type = \"{}\", but --mate needs an equal_base_circle_bevel_gear",
-                     job_.gear_type());
+    if (asked.shaft_angle_deg || asked.axis_distance_mm)
+      return fail_at(
+          job_.where("gear.type"),
+          "type = \"face_gear\" says its shaft_angle and offset: --shaft-angle and --axis-distance belong to "
+          "two jobs that do not");
     return Ok{};
+  }
+  [[nodiscard]] process::ValueOrErrors<process::CutFlanks> measured(const job::MeasuredInput& files) const override {
+    return measured_flanks(gear_, files);
+  }
+  [[nodiscard]] std::shared_ptr<const tooth_space::ToothedPart> toothed() const override {
+    return face_gear::part_of(gear_);
   }
   [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,
                                                                       const process::CutFlanks* cut,

@@ -33,10 +33,9 @@ double azimuth_of_space(const tooth_space::ToothedPart& part, const Vec3& p) {
   return root ? azimuth(root->p) : 0;
 }
 
-Diagnostic no_contact(const job::Job& job) {
+Diagnostic needs_mate(const job::Job& job) {
   return fail_at(job.where("gear.type"),
-                 "type = \"{}\": contact is not there yet for it; it rolls face_gear and equal_base_circle_bevel_gear",
-                 job.gear_type());
+                 "type = \"{}\" rolls with a mate that has a job of its own: --mate JOB is needed", job.gear_type());
 }
 
 /// With the rows that the gear type adds to the ledger.
@@ -87,20 +86,47 @@ Status ToothedProcess::modify() {
 Result<process::Correction> ToothedProcess::correct(const job::MeasuredInput& measured, app::StageClock& clock) {
   return clock.run("correction", [&] { return answer(measured); });
 }
-Result<process::Correction> ToothedProcess::answer(const job::MeasuredInput& measured) {
+job::GridOfGear ToothedProcess::measured_grid() const {
   job::GridOfGear grid;
   grid.zones = std::size_t(gear_.part->zones());
-  grid.nominal = [&](int rows, int columns) { return inspection::inspection_grid(gear_.solid, {rows, columns}); };
+  grid.nominal = [this](int rows, int columns) { return inspection::inspection_grid(gear_.solid, {rows, columns}); };
   std::vector<std::optional<tooth_space::FlankRectangle>> flanks_of_zones;
   for (int zone = 0; zone < gear_.part->zones(); ++zone)
     for (const int side : {1, -1})
       flanks_of_zones.push_back(tooth_space::flank_rectangle(gear_.part->space(zone), side));
-  grid.place = [&](const inspection::InspectionPoint& at) -> Vec2 {
+  grid.place = [this, flanks_of_zones](const inspection::InspectionPoint& at) -> Vec2 {
     const auto& flank = flanks_of_zones[std::size_t(2 * at.zone + (at.side > 0 ? 0 : 1))];
     const Vec2 share = flank ? flank->share_at(gear_.part->space(at.zone), at.p) : Vec2(NAN, NAN);
     return {share.x(), -share.y()};
   };
   grid.foot = -1;
+  return grid;
+}
+process::ValueOrErrors<process::CutFlanks> ToothedProcess::measured(const job::MeasuredInput& measured) const {
+  constexpr int kRows = 21, kColumns = 25;
+  const job::GridOfGear grid = measured_grid();
+  const auto fitted = job::fit_measured(measured, grid);
+  if (!fitted) return std::vector{fitted.error()};
+  const auto places = inspection::inspection_grid(gear_.solid, {kRows, kColumns, 0});
+  if (!places) return std::vector{places.error()};
+  process::CutFlanks out;
+  out.route = "measured";
+  for (const job::MeasuredField& field : *fitted) {
+    process::CutFlanks::Flank flank{field.zone, field.side, kRows, kColumns, {}, {}, {}};
+    for (const inspection::InspectionPoint& at : *places) {
+      if (at.zone != field.zone || at.side != field.side) continue;
+      const Vec2 place = grid.place(at);
+      flank.nominal.push_back(at.p);
+      flank.normals.push_back(at.n);
+      flank.deviation_mm.push_back(field.deviation_mm(place.x(), place.y()));
+    }
+    out.flanks.push_back(std::move(flank));
+    out.warnings.push_back(process::words_of_fit(field.zone, field.side, field.field.residual()));
+  }
+  return out;
+}
+Result<process::Correction> ToothedProcess::answer(const job::MeasuredInput& measured) {
+  const job::GridOfGear grid = measured_grid();
   auto fitted = job::fit_measured(measured, grid);
   if (!fitted) return fitted.error();
   process::Correction out;
@@ -178,11 +204,11 @@ process::ValueOrErrors<process::CutFlanks> ToothedProcess::shaped(const process:
 std::unique_ptr<inspection::TouchedPart> ToothedProcess::touched() const {
   return std::make_unique<inspection::TouchedTeeth>(gear_.solid);
 }
-Status ToothedProcess::accepts(const process::ContactAsked&) const { return no_contact(job_); }
+Status ToothedProcess::accepts(const process::ContactAsked&) const { return needs_mate(job_); }
 process::ValueOrErrors<process::ContactFound> ToothedProcess::contact(const process::ContactAsked&,
                                                                       const process::CutFlanks*,
                                                                       app::StageClock&) const {
-  return std::vector{no_contact(job_)};
+  return std::vector{needs_mate(job_)};
 }
 
 process::ValueOrErrors<std::unique_ptr<process::GearProcess>> toothed_process(const job::Job& job, ToothedGear gear) {

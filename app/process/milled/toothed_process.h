@@ -61,12 +61,16 @@ class ToothedProcess : public process::GearProcess {
                                                               app::StageClock& clock) const override;
   [[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped(const process::FlankGrid&) const override;
   [[nodiscard]] std::unique_ptr<inspection::TouchedPart> touched() const override;
+  [[nodiscard]] std::shared_ptr<const tooth_space::ToothedPart> toothed() const override { return aimed_; }
+  [[nodiscard]] process::ValueOrErrors<process::CutFlanks> measured(const job::MeasuredInput& measured) const override;
   [[nodiscard]] Status accepts(const process::ContactAsked&) const override;
   [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,
                                                                       const process::CutFlanks*,
                                                                       app::StageClock&) const override;
   [[nodiscard]] std::string contact_section(const std::vector<proof::SurfaceGrid>&,
-                                            std::vector<std::string>&) const override {
+                                            std::vector<std::string>& warnings) const override {
+    if (job_.contact)
+      warnings.push_back("[contact] is not rolled by a run: the mate has a job of its own, toothpath contact --mate");
     return {};
   }
 
@@ -77,6 +81,8 @@ class ToothedProcess : public process::GearProcess {
   [[nodiscard]] const ToothedGear& gear() const { return gear_; }
 
  private:
+  /// Where measured places lie on the flanks.
+  [[nodiscard]] job::GridOfGear measured_grid() const;
   /// The flanks to aim at answer measured grids.
   [[nodiscard]] Result<process::Correction> answer(const job::MeasuredInput& measured);
 

@@ -1,4 +1,4 @@
-#include "app/process/face/contact_figures.h"
+#include "app/process/rolled/figures.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,12 +10,12 @@
 #include "app/report/svg/plot.h"
 #include "geometry/base/angle.h"
 
-namespace toothpath::face {
+namespace toothpath::rolled {
 namespace {
 
 constexpr int kLinesAPitch = 4;
 
-std::string pattern_note(const ContactAnalysis& a, const ContactOfSide& side, const contact::FlankPattern& p) {
+std::string pattern_note(const RolledPair& a, const RolledSide& side, const contact::FlankPattern& p) {
   std::string note = fmt::format("{:.1f} % of the flank carries compound of {:g} um. ", p.marked_share * 100,
                                  a.settings.compound_mm * app::kUm);
   if (p.marked_share > 0 && p.marked_share < 0.95 && p.length_mm >= 1.3 * p.width_mm)
@@ -30,20 +30,15 @@ std::string pattern_note(const ContactAnalysis& a, const ContactOfSide& side, co
 int stride_of(int rows) { return std::max(1, (rows - 1) / 240); }
 
 /// Every place touches at one turn of the pinion: the lines of equal turns, some a pitch.
-void add_lines(const ContactAnalysis& a, const contact::ContactFlank& f, int stride, svg::PatternDrawing& d) {
+void add_lines(const RolledPair& a, const RolledFlank& f, int stride, svg::PatternDrawing& d) {
   const double step = 2 * kPi / a.pinion_teeth / kLinesAPitch;
   for (int r = 0; r < f.rows; r += stride)
-    for (int c = 0; c < f.columns; ++c) {
-      const auto k = f.index(r, c);
-      d.moment.push_back(f.surface.flank_phi(f.side, f.theta[k], f.B[k]) / step);
-    }
+    for (int c = 0; c < f.columns; ++c) d.moment.push_back(f.turn_rad[f.index(r, c)] / step);
   const auto [low, high] = std::minmax_element(d.moment.begin(), d.moment.end());
   for (double level = std::ceil(*low); level < *high; ++level) d.lines.push_back(level);
 }
 
-svg::PatternDrawing drawing(const ContactAnalysis& a, const contact::ContactMember& member,
-                            const contact::FlankPattern& p, bool on_pinion, bool line) {
-  const contact::ContactFlank& f = member.flank;
+svg::PatternDrawing drawing(const RolledPair& a, const RolledFlank& f, const contact::FlankPattern& p, bool on_pinion) {
   svg::PatternDrawing d;
   d.compound_um = a.settings.compound_mm * app::kUm;
   d.columns = f.columns;
@@ -53,33 +48,34 @@ svg::PatternDrawing drawing(const ContactAnalysis& a, const contact::ContactMemb
     ++d.rows;
     for (int c = 0; c < f.columns; ++c) {
       const auto k = f.index(r, c);
-      d.x.push_back(on_pinion ? p.pinion_Z_mm[k] : std::hypot(f.points[k].x(), f.points[k].y()));
-      d.y.push_back(on_pinion ? p.pinion_radius_mm[k] : f.points[k].z());
+      d.x.push_back(on_pinion ? p.pinion_Z_mm[k] : f.x[k]);
+      d.y.push_back(on_pinion ? p.pinion_radius_mm[k] : f.y[k]);
       d.gap_um.push_back(p.gap_mm[k] * app::kUm);
     }
   }
-  d.x_label = on_pinion ? "along the pinion's axis [mm]" : "radius from the gear's axis [mm]";
-  d.y_label = on_pinion ? "radius [mm]" : "height z [mm]";
-  if (!on_pinion && !line)
+  d.x_label = on_pinion ? "along the pinion's axis [mm]" : a.words->x_label;
+  d.y_label = on_pinion ? "radius [mm]" : a.words->y_label;
+  if (on_pinion) return d;
+  if (!f.turn_rad.empty()) add_lines(a, f, stride, d);
+  else
     for (const auto& place : p.path) d.path.emplace_back(place.radius_mm, place.height_mm);
-  if (!on_pinion && line) add_lines(a, f, stride, d);
   return d;
 }
 
 }  // namespace
 
-std::string name_of(const ContactAnalysis& a, const ContactOfSide& side) {
+std::string name_of(const RolledPair& a, const RolledSide& side) {
   return fmt::format("flank {:+}, {}", side.side, side.as_cut ? a.route : "exact");
 }
 
-std::vector<ContactFigure> contact_patterns(const ContactAnalysis& a) {
+std::vector<ContactFigure> contact_patterns(const RolledPair& a) {
   std::vector<ContactFigure> figures;
   for (const auto& side : a.sides)
-    for (std::size_t m = 0; m < side.members.size(); ++m) {
-      const std::string zone = side.members.size() > 1 ? fmt::format(", ring {}", side.members[m].flank.zone) : "";
+    for (std::size_t m = 0; m < side.flanks.size(); ++m) {
+      const std::string zone = side.flanks.size() > 1 ? fmt::format(", ring {}", side.flanks[m].zone) : "";
       const contact::FlankPattern& p = side.roll.patterns[m];
       for (const bool on_pinion : {false, true}) {
-        svg::PatternDrawing d = drawing(a, side.members[m], p, on_pinion, side.kind == "line");
+        svg::PatternDrawing d = drawing(a, side.flanks[m], p, on_pinion);
         d.title = fmt::format("contact pattern on the {}, {}{}", on_pinion ? "pinion" : "gear", name_of(a, side), zone);
         figures.push_back(
             {fmt::format("{}: {}{}", on_pinion ? "Pinion" : "Gear", name_of(a, side), zone),
@@ -94,7 +90,7 @@ std::vector<ContactFigure> contact_patterns(const ContactAnalysis& a) {
 namespace {
 
 /// Curves of single pairs; empty where the ratio is constant.
-svg::LineChart motion_chart(const ContactAnalysis& a) {
+svg::LineChart motion_chart(const RolledPair& a) {
   std::vector<ease_off::MotionCurve> curves;
   for (const auto& side : a.sides)
     if (!side.as_cut && side.roll.error_range_rad >= kNoError) curves.push_back(motion_of(side));
@@ -103,13 +99,13 @@ svg::LineChart motion_chart(const ContactAnalysis& a) {
 
 }  // namespace
 
-std::vector<svg::LineChart> contact_charts(const ContactAnalysis& a) {
+std::vector<svg::LineChart> contact_charts(const RolledPair& a) {
   svg::LineChart error, pairs;
   error.title = "Transmission error over one pitch";
   error.x_label = "gear turn [pitches]";
   error.y_label = "error less its mean [\u00b5rad]";
   error.note = "The gear's turn beyond that of the gear ratio, phi_2 - phi_1 N_p/N_2. Rigid bodies, no load.";
-  if (!is_modified(a))
+  if (a.involute_pinion && !is_modified(a))
     error.note += " On the exact flank the error is a constant wherever contact is inside the flank, also misaligned.";
   pairs.title = "Pairs in contact over one pitch";
   pairs.x_label = "gear turn [pitches]";
@@ -144,20 +140,21 @@ std::vector<svg::LineChart> contact_charts(const ContactAnalysis& a) {
   return charts;
 }
 
-page::PageTable contact_table(const ContactAnalysis& a) {
+page::PageTable contact_table(const RolledPair& a) {
   page::PageTable table{"Contact",
                         {"flank", "surface", "ring", "contact", "error range urad", "error range um", "error mean urad",
-                         "contact ratio", "pairs", "within compound", "pattern %", "r mm", "z mm"},
+                         "contact ratio", "pairs", "within compound", "pattern %", std::string(a.words->x_text) + " mm",
+                         std::string(a.words->y_text) + " mm"},
                         {},
                         ""};
-  table.note = fmt::format("Micrometres at the pitch radius {:.3f} mm. Ratio: mean number of pairs that touch.",
+  table.note = fmt::format("Micrometres at the {} {:.3f} mm. Ratio: mean number of pairs that touch.", a.words->lever,
                            a.pitch_radius_mm);
   for (const auto& side : a.sides)
-    for (std::size_t m = 0; m < side.members.size(); ++m) {
+    for (std::size_t m = 0; m < side.flanks.size(); ++m) {
       const contact::RollResult& r = side.roll;
       const contact::FlankPattern& p = r.patterns[m];
       table.rows.push_back(
-          {fmt::format("{:+}", side.side), side.as_cut ? a.route : "exact", std::to_string(side.members[m].flank.zone),
+          {fmt::format("{:+}", side.side), side.as_cut ? a.route : "exact", std::to_string(side.flanks[m].zone),
            side.kind, svg::short_number(r.error_range_rad < kNoError ? 0 : r.error_range_rad * app::kMicro, 4),
            svg::short_number(r.error_range_rad < kNoError ? 0 : r.error_range_rad * a.pitch_radius_mm * app::kUm, 4),
            fmt::format("{:.4f}", std::abs(r.error_mean_rad) < kNoError ? 0 : r.error_mean_rad * app::kMicro),
@@ -169,7 +166,50 @@ page::PageTable contact_table(const ContactAnalysis& a) {
   return table;
 }
 
-std::string contact_section_body(const ContactAnalysis& a) {
+std::string contact_page(const RolledPair& a, const std::string& about) {
+  page::StudyPage page;
+  page.title = a.job_name + ": contact";
+  page.subtitle = fmt::format("pinion of {} teeth, gear of {} teeth, compound {:g} um", a.pinion_teeth, a.gear_teeth,
+                              a.settings.compound_mm * app::kUm);
+  if (!a.mate.empty()) page.subtitle += "; mate: " + a.mate;
+  const contact::Misalignment& moved = a.settings.moved;
+  if (!moved.none()) page.subtitle += "; " + words_of(moved);
+  Verdict verdict = verdict_of(a);
+  page.good = verdict.inside, page.verdict = std::move(verdict.words);
+  page.introduction = {
+      "Both members turn as rigid bodies without load, as on a rolling tester. The compound marks every place where "
+      "the flanks come closer than its thickness at any moment of the mesh; the orange line is the path of contact, "
+      "orange lines are lines of contact.",
+      about};
+  for (const auto& note : a.notes) page.introduction.push_back(note);
+  page.charts = contact_charts(a);
+  for (auto& f : contact_patterns(a))
+    page.figures.push_back({std::move(f.caption), std::move(f.svg), std::move(f.note)});
+  for (const auto& side : a.sides)
+    for (auto& figure : ease_off::map_figures(ease_off_of(a, side), name_of(a, side)))
+      page.figures.push_back(std::move(figure));
+  page.tables = {contact_table(a)};
+  ease_off::add_to_page(page, a.misaligned);
+  if (a.loaded) {
+    page.introduction.push_back(under_load::loaded_introduction(*a.loaded));
+    for (const auto& note : a.loaded->notes) page.introduction.push_back(note);
+    for (auto& table : under_load::loaded_tables(*a.loaded)) page.tables.push_back(std::move(table));
+    for (auto& chart : under_load::loaded_charts(*a.loaded)) page.charts.push_back(std::move(chart));
+  }
+  return study_page_html(page);
+}
+
+process::NamedFiles contact_files(const RolledPair& a, const std::string& about) {
+  std::vector<ease_off::SideMap> maps;
+  for (const auto& side : a.sides) maps.push_back(ease_off_of(a, side));
+  return {{"contact.csv", contact_csv(a)},
+          {"ease_off.csv", ease_off::map_csv(maps)},
+          {"transmission.csv", transmission_csv(a)},
+          {"contact.json", contact_json(a)},
+          {"contact.html", contact_page(a, about)}};
+}
+
+std::string contact_section_body(const RolledPair& a) {
   std::string out = fmt::format(
       "<p>Rolled with a pinion of {} teeth as rigid bodies without load, marking compound of {:g} um.</p>\n",
       a.pinion_teeth, a.settings.compound_mm * app::kUm);
@@ -202,4 +242,4 @@ std::string contact_section_body(const ContactAnalysis& a) {
   return out + "</div>\n";
 }
 
-}  // namespace toothpath::face
+}  // namespace toothpath::rolled

@@ -1,0 +1,158 @@
+#include "app/process/toothed_pair/shafts.h"
+
+#include <cmath>
+
+#include "geometry/base/angle.h"
+#include "geometry/face_gear/space_sheet.h"
+
+namespace toothpath::toothed_pair {
+namespace {
+
+using Refused = std::vector<Diagnostic>;
+
+/// Share of a pitch cone, or of a base pitch, by which two gears may differ and still mesh.
+constexpr double kFits = 1e-3;
+
+contact::MatePlace outside(const Shafts& shafts, const JobGear&, const JobGear&, const contact::Misalignment& moved) {
+  contact::OutsideShafts at;
+  at.angle_rad = shafts.angle_rad;
+  at.distance_mm = shafts.distance_mm;
+  return contact::outside_place(at, moved);
+}
+contact::MatePlace on_face_gear(const Shafts&, const JobGear& gear, const JobGear& pinion,
+                                const contact::Misalignment& moved) {
+  const auto& sheet = dynamic_cast<const face_gear::SpaceSheet&>(gear.part->space(0));
+  return contact::pinion_place(sheet.surface(), pinion.part->teeth(), moved);
+}
+
+/// What the keys of a gear say of its shaft.
+struct Cone {
+  std::optional<double> pitch_angle_rad, shaft_angle_rad;
+};
+std::optional<Cone> cone_of(const job::Job& job) {
+  if (const auto* g = job.straight_bevel_gear()) return Cone{g->pitch_angle_rad, std::nullopt};
+  if (const auto* g = std::get_if<spiral_bevel::SpiralBevelParameters>(&job.gear))
+    return Cone{g->pitch_angle_rad, g->shaft_angle_rad};
+  if (std::holds_alternative<flank_grid::FlankGridParameters>(job.gear)) return Cone{};
+  return std::nullopt;
+}
+
+/// Transverse, on the reference cylinder.
+struct Rolling {
+  double radius_mm = 0, base_mm = 0, shift_mm = 0, helix_rad = 0;
+};
+Rolling rolling_of(const cylindrical::CylindricalParameters& p) {
+  const double beta = p.zones.front().helix_angle_rad,
+               wide = p.module_plane == ModulePlane::normal ? 1 / std::cos(beta) : 1;
+  const double r = 0.5 * p.module_mm * wide * p.teeth, alpha = std::atan(std::tan(p.pressure_angle_rad) * wide);
+  return {r, r * std::cos(alpha), p.profile_shift * p.module_mm, beta};
+}
+
+/// The distance at which thicknesses and spaces of the drawings, without allowances, leave no backlash.
+std::optional<double> distance_without_backlash(const Rolling& a, const Rolling& b) {
+  const double alpha = std::acos(a.base_mm / a.radius_mm),
+               wanted =
+                   std::tan(alpha) - alpha + (a.shift_mm + b.shift_mm) * std::tan(alpha) / (a.radius_mm + b.radius_mm);
+  if (!(wanted > 0)) return std::nullopt;
+  double working = alpha;
+  for (int k = 0; k < 50; ++k) {
+    const double slope = std::tan(working) * std::tan(working);
+    working -= (std::tan(working) - working - wanted) / slope;
+    if (!(working > 1e-3)) working = 1e-3;
+  }
+  return (a.base_mm + b.base_mm) / std::cos(working);
+}
+
+process::ValueOrErrors<Shafts> parallel(const JobGear& gear, const JobGear& pinion, const process::ContactAsked& asked,
+                                        Shafts out) {
+  const Rolling a = rolling_of(*gear.job.cylindrical_gear()), b = rolling_of(*pinion.job.cylindrical_gear());
+  if (asked.shaft_angle_deg.value_or(0) != 0)
+    return Refused{fail_at(gear.job.where("gear.type"),
+                           "--shaft-angle {:g}: two cylindrical gears are rolled on parallel shafts alone",
+                           *asked.shaft_angle_deg)};
+  const double pitch_a = a.base_mm / gear.part->teeth(), pitch_b = b.base_mm / pinion.part->teeth();
+  if (std::abs(pitch_a - pitch_b) > kFits * pitch_a)
+    return Refused{fail_at(pinion.job.where("gear.module"),
+                           "the base pitch, {:.5f} mm, is not that of the mate, {:.5f} mm: module, pressure angle and "
+                           "helix angle of both must agree",
+                           kTwoPi * pitch_b, kTwoPi * pitch_a)};
+  if (std::abs(a.helix_rad + b.helix_rad) > radians(1))
+    return Refused{fail_at(pinion.job.where("gear.zone[0].helix_angle"),
+                           "helix_angle = {:g} deg and {:g} deg of the mate: on parallel shafts one is minus the other",
+                           degrees(b.helix_rad), degrees(a.helix_rad))};
+  const auto found = asked.axis_distance_mm ? asked.axis_distance_mm : distance_without_backlash(a, b);
+  if (!found)
+    return Refused{fail_at(pinion.job.where("gear.profile_shift"),
+                           "these profile shifts leave no distance without backlash: --axis-distance MM says where the "
+                           "shafts stand")};
+  out.distance_mm = *found;
+  return out;
+}
+
+process::ValueOrErrors<Shafts> crossing(const JobGear& gear, const JobGear& pinion, const Cone& a, const Cone& b,
+                                        const process::ContactAsked& asked, Shafts out) {
+  out.distance_mm = asked.axis_distance_mm.value_or(0);
+  const auto key = a.shaft_angle_rad ? a.shaft_angle_rad : b.shaft_angle_rad;
+  if (a.shaft_angle_rad && b.shaft_angle_rad && std::abs(*a.shaft_angle_rad - *b.shaft_angle_rad) > 1e-6)
+    return Refused{fail_at(pinion.job.where("gear.shaft_angle"), "shaft_angle = {:g} deg, but {:g} deg of the mate",
+                           degrees(*b.shaft_angle_rad), degrees(*a.shaft_angle_rad))};
+  if (asked.shaft_angle_deg) out.angle_rad = radians(*asked.shaft_angle_deg);
+  else if (key) out.angle_rad = *key;
+  else if (a.pitch_angle_rad && b.pitch_angle_rad) out.angle_rad = *a.pitch_angle_rad + *b.pitch_angle_rad;
+  else
+    return Refused{fail_at((a.pitch_angle_rad ? pinion : gear).job.where("gear.type"),
+                           "type = \"{}\" says no shaft angle, and its mate none for it: --shaft-angle DEG is needed",
+                           (a.pitch_angle_rad ? pinion : gear).job.gear_type())};
+  if (a.pitch_angle_rad && b.pitch_angle_rad && out.distance_mm == 0) {
+    const double rolls = std::sin(*a.pitch_angle_rad) * pinion.part->teeth(),
+                 with = std::sin(*b.pitch_angle_rad) * gear.part->teeth();
+    if (std::abs(rolls - with) > kFits * with)
+      return Refused{
+          fail_at(pinion.job.where("gear.teeth"),
+                  "pitch angles {:.5f} and {:.5f} deg do not roll on each other with {} and {} teeth: the sines must "
+                  "be as the teeth",
+                  degrees(*b.pitch_angle_rad), degrees(*a.pitch_angle_rad), pinion.part->teeth(), gear.part->teeth())};
+  }
+  return out;
+}
+
+}  // namespace
+
+process::ValueOrErrors<Shafts> shafts_of(const JobGear& job, const JobGear& mate, const process::ContactAsked& asked) {
+  Shafts out;
+  const bool face = job.job.face_gear() != nullptr, other_face = mate.job.face_gear() != nullptr;
+  out.job_is_gear = face != other_face ? face : job.part->teeth() >= mate.part->teeth();
+  const JobGear &gear = out.job_is_gear ? job : mate, &pinion = out.job_is_gear ? mate : job;
+  const auto a = cone_of(gear.job), b = cone_of(pinion.job);
+  const bool cylinder = pinion.job.cylindrical_gear() != nullptr;
+  if (face || other_face) {
+    if (!cylinder && !(b && !b->pitch_angle_rad))
+      return Refused{fail_at(pinion.job.where("gear.type"),
+                             "type = \"{}\" does not run with a face gear: a cylindrical_gear or a flank_grid does",
+                             pinion.job.gear_type())};
+    if (asked.shaft_angle_deg || asked.axis_distance_mm)
+      return Refused{fail_at(gear.job.where("gear"),
+                             "--shaft-angle and --axis-distance: the face gear says them, as shaft_angle and offset")};
+    out.angle_rad = gear.job.face_gear()->shaft_angle_rad;
+    out.distance_mm = gear.job.face_gear()->offset_mm;
+    out.place = on_face_gear;
+    return out;
+  }
+  out.place = outside;
+  if (cylinder && gear.job.cylindrical_gear() != nullptr) return parallel(gear, pinion, asked, out);
+  if (a && b) return crossing(gear, pinion, *a, *b, asked, out);
+  const JobGear& other = cylinder ? gear : pinion;
+  if (const auto grid = cone_of(other.job); !grid || grid->pitch_angle_rad)
+    return Refused{fail_at(other.job.where("gear.type"), "type = \"{}\" does not run with a {}", other.job.gear_type(),
+                           (cylinder ? pinion : gear).job.gear_type())};
+  if (!asked.shaft_angle_deg || !asked.axis_distance_mm)
+    return Refused{
+        fail_at(other.job.where("gear.type"),
+                "type = \"flank_grid\" with a cylindrical gear: --shaft-angle DEG and --axis-distance MM say "
+                "how the shafts stand")};
+  out.angle_rad = radians(*asked.shaft_angle_deg);
+  out.distance_mm = *asked.axis_distance_mm;
+  return out;
+}
+
+}  // namespace toothpath::toothed_pair

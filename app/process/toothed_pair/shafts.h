@@ -1,0 +1,31 @@
+// How two gears with a job each stand to each other: which carries the grid, their shafts, read from the keys of both.
+#pragma once
+
+#include <memory>
+
+#include "app/process/gear_process.h"
+#include "geometry/contact/toothed_pair.h"
+
+namespace toothpath::toothed_pair {
+
+/// A gear with its job; both outlive what is made of them.
+struct JobGear {
+  const job::Job& job;
+  std::shared_ptr<const tooth_space::ToothedPart> part;
+};
+
+/// Where the shafts stand, without misalignments.
+struct Shafts {
+  bool job_is_gear = true;  ///< the gear of the job carries the grid; else that of the mate
+  double angle_rad = 0, distance_mm = 0;
+  contact::MatePlace (*place)(const Shafts&, const JobGear& gear, const JobGear& pinion,
+                              const contact::Misalignment& moved) = nullptr;
+};
+
+/// The gear with more teeth carries the grid, a face gear always. Parallel shafts of cylindrical gears stand at the
+/// distance without backlash, bevel gears have their crossing points together. Refused, each with its place: gears that
+/// cannot mesh, a quantity that neither the keys nor the options say, an option that the keys contradict.
+[[nodiscard]] process::ValueOrErrors<Shafts> shafts_of(const JobGear& job, const JobGear& mate,
+                                                       const process::ContactAsked& asked);
+
+}  // namespace toothpath::toothed_pair
