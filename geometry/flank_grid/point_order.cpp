@@ -17,6 +17,7 @@ constexpr double kOffSheet = 0.1;                 // of the space's width
 constexpr double kLeastGap = 2e-4;                // between columns, of the length; 400 of them leave 2.5e-3
 constexpr double kClearGap = 1.5;                 // gaps between columns against those within one
 constexpr double kMissing = 1.7;                  // times the steps beside it: something is missing
+constexpr double kFlat = 0.1;                     // sine of a pitch angle's complement: teeth on a face
 constexpr double kWidens = 1.1;                   // a space, from the root to the tip
 constexpr int kRounds = 30;
 
@@ -325,17 +326,19 @@ class Ordering {
     if (std::max(first, second) < std::log(kWidens))
       low = (c[1] - c[0]).norm() + (c[2] - c[3]).norm() > (c[2] - c[1]).norm() + (c[3] - c[0]).norm() ? 0 : 1;
     const auto middle = [&](std::size_t k) { return Vec2(0.5 * (c[k % 4] + c[(k + 1) % 4])); };
-    up_ = middle(low + 2) - middle(low);
+    up_ = (middle(low + 2) - middle(low)).normalized();
     bool widens = std::abs(wide[low + 2 < 4 ? low + 2 : low - 2]) > std::abs(wide[low]);
-    if (up_.x() - up_.y() < 0) up_ = -up_, widens = !widens;
+    const bool normals = points_.front().n.has_value(), flat = std::abs(up_.x()) < kFlat;
+    if (flat ? up_.y() > 0 : up_.x() < 0) up_ = -up_, widens = !widens;
+    if (flat && normals && !turned && !widens) up_ = -up_, widens = true;  // they say what a flat face does not
     along_ = middle(low + 1) - middle(low + 3);
     if (along_.x() + along_.y() < 0) along_ = -along_;
-    const bool normals = points_.front().n.has_value();
     const SourcePosition& at = points_.front().at;
     if (!widens && !(normals && turned))
       return fail_at(at,
                      "what lies between the flanks is narrower at the tip than at the root: they bound a tooth, not a "
-                     "space, or z points the other way{}. Turn one of them by a pitch about z",
+                     "space{}{}. Turn one of them by a pitch about z",
+                     flat ? ", or z points the other way" : "",
                      normals ? ", or the normals i, j, k point into the material" : "");
     if (!widens)
       return fail_at(at,
@@ -344,8 +347,11 @@ class Ordering {
     if (turned)
       return fail_at(at,
                      "the normals i, j, k point into the material: those of the flank at {:.3f} deg, on the side of "
-                     "negative azimuth of its space, must have a positive part along the azimuth",
-                     degrees(azimuth(points_[minus_.front()].p)));
+                     "negative azimuth of its space, must have a positive part along the azimuth{}",
+                     degrees(azimuth(points_[minus_.front()].p)),
+                     flat ? "; or the flanks bound a tooth whose tip lies towards growing z, and one of them must be "
+                            "turned by a pitch about z"
+                          : "");
     for (const int side : {1, -1})
       for (const std::size_t k : flank(side))
         if (points_[k].flank != 0 && points_[k].flank != side)

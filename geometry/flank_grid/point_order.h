@@ -22,9 +22,10 @@ struct OrderedPoints {
 };
 
 /// Finds the two flanks, by the normals or by the two sheets that the points lie on, and in each of them rows and
-/// columns. The tip is where the space is wider; it lies towards growing r - z, as in the frame of the job. Refused,
-/// with the place of a point: points that are doubled or missing, a row or column that is missing, folds, points beside
-/// both sheets, normals into the material, flanks of a tooth instead of a space, fewer than 4 x 4 points.
+/// columns. The tip is where the space is wider; it lies outwards, and of teeth on a face where the normals say, else
+/// towards falling z as in the frame of the job. Refused, with the place of a point: points that are doubled or
+/// missing, a row or column that is missing, folds, points beside both sheets, normals into the material, flanks of a
+/// tooth instead of a space, fewer than 4 x 4 points.
 [[nodiscard]] Result<OrderedPoints> order_points(const std::vector<LoosePoint>& points);
 
 /// What of root and tip follows from the points.

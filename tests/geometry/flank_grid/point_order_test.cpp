@@ -127,6 +127,20 @@ TEST(PointOrder, RefusesWhatIsNoGridAtItsPlace) {
     }
 }
 
+TEST(PointOrder, TeethMayPointEitherWayAlongTheAxis) {
+  flank_grid::FlankGridParameters gear = bevel({6, 8, 0.8, true});
+  for (const int side : {1, -1}) {
+    auto& grid = side > 0 ? gear.plus : gear.minus;
+    for (Vec3& p : grid.place) p.z() = 150 - p.z();
+    for (Vec3& n : grid.normal) n.z() = -n.z();
+  }
+  for (const bool normals : {true, false}) {
+    const auto ordered = order_points(shuffled(loose(gear, normals), 5));
+    ASSERT_TRUE(ordered) << ordered.error().text();
+    EXPECT_GT(radius(ordered->plus.place[ordered->plus.index(5, 0)]), radius(ordered->plus.place[0]));
+  }
+}
+
 TEST(PointOrder, ARowThatBothFlanksLackIsSeenByTheStepsBesideIt) {
   Loose points = loose(sampled(left_helical(), {9, 7, 1.2, true}), false);
   for (const int from : {9 * 7 + 3, 3})  // column 3 of both
