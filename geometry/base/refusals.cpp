@@ -6,6 +6,24 @@
 #include "geometry/base/angle.h"
 
 namespace toothpath {
+
+std::optional<double> that_does(double from, double to, const std::function<bool(double)>& does) {
+  constexpr int kTried = 16, kCloser = 20;
+  double bad = from;
+  for (int k = 1; k <= kTried; ++k) {
+    double good = from + (to - from) * k / kTried;
+    if (!does(good)) {
+      bad = good;
+      continue;
+    }
+    for (int n = 0; n < kCloser; ++n) {
+      const double x = 0.5 * (bad + good);
+      (does(x) ? good : bad) = x;
+    }
+    return good;
+  }
+  return {};
+}
 namespace {
 
 constexpr double kMostLength = 1e5, kMostHelixAngle = 60;  // mm, deg

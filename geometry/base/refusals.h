@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +14,10 @@
 #include "geometry/base/result.h"
 
 namespace toothpath {
+
+/// The value next to `from`, on the way from there to `to`, that a test admits: of sixteen the first, then closer by
+/// halving. Nothing where it admits none of them.
+[[nodiscard]] std::optional<double> that_does(double from, double to, const std::function<bool(double)>& does);
 
 class Refusals {
  public:

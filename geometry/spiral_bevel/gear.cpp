@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "geometry/base/angle.h"
 #include "geometry/base/refusals.h"
@@ -20,6 +21,8 @@ constexpr double kSameLine = 0.005;                // mm over the face: what may
 constexpr double kLeastRoll = 0.5, kMostRoll = 2;  // ratio of roll times the sine of the pitch angle
 constexpr double kWrongHand = -5 * kDegree;
 constexpr std::size_t kMostModified = 7;
+constexpr double kMostTip = 20 * kDegree, kMostPressure = 45 * kDegree;  // tried: above the one asked, in all
+constexpr int kRises = 64;                                               // of a flank, from its fillet to the face cone
 
 double told(double x) { return std::floor(1e4 * x) / 1e4; }
 const char* blade_of(std::size_t flank) { return flank == 0 ? "outside" : "inside"; }
@@ -203,13 +206,11 @@ class Inspection : public Refusals {
     const auto low = tooth_space::place_at(space, tooth_space::fillet_of(side), kPi / 2, s),
                join = tooth_space::place_at(space, tooth_space::fillet_of(side), f.alpha, s);
     if (low && !(space.tip(s) > chart.up(low->p)))
-      return refuse("tip_angle", "the face cone lies {:.4f} mm below the root at cone distance {:.4f} mm",
-                    chart.up(low->p) - space.tip(s), -s);
-    if (!tip || !low || !join)
-      return refuse(
-          cut_key(gear_, i, "radial_distance"),
-          "radial_distance = {:.4f} mm: the {} blade makes no flank from root to tip at cone distance {:.4f} mm", f.S,
-          blade_of(i), -s);
+      return refuse("tip_angle",
+                    "tip_angle = {:.4f} deg: the face cone lies {:.4f} mm below the root at cone distance {:.4f} mm",
+                    degrees(gear_.tip_angle_rad), chart.up(low->p) - space.tip(s), -s);
+    if (!low || !join) return no_root(space, i, s);
+    if (!tip) return ends_early(space, i, s);
     const auto middle = space.at(tooth_space::flank_of(side), k.middle[i].x(), k.middle[i].y());
     // Along the fillet's angle the surface goes down, along the blade up.
     const auto sound = [&](Piece piece, double u) {
@@ -225,14 +226,18 @@ class Inspection : public Refusals {
     };
     for (int n = 0; n <= kHeights; ++n)
       if (!sound(tooth_space::fillet_of(side), f.alpha + (kPi / 2 - f.alpha) * n / kHeights)) return;
+    if (!tooth_space::place_at(space, tooth_space::flank_of(side), f.u_F, s)) return ends_early(space, i, s);
     if (!sound(tooth_space::flank_of(side), f.u_F)) return;
     if (!(tip->u > f.u_F))
-      return refuse(
-          "tip_angle",
-          "the face cone lies below the end of the fillet at cone distance {:.4f} mm, {:.4f} mm above the root", -s,
-          chart.up(join->p) - chart.up(low->p));
-    for (int n = 1; n <= kHeights; ++n)
-      if (!sound(tooth_space::flank_of(side), f.u_F + (tip->u - f.u_F) * n / kHeights)) return;
+      return refuse("tip_angle",
+                    "tip_angle = {:.4f} deg: the face cone lies {:.4f} mm below the end of the fillet at cone distance "
+                    "{:.4f} mm",
+                    degrees(gear_.tip_angle_rad), chart.up(join->p) - space.tip(s), -s);
+    for (int n = 1; n <= kHeights; ++n) {
+      const double u = f.u_F + (tip->u - f.u_F) * n / kHeights;
+      if (!tooth_space::place_at(space, tooth_space::flank_of(side), u, s)) return ends_early(space, i, s);
+      if (!sound(tooth_space::flank_of(side), u)) return;
+    }
     for (const double v : {k.v_at(tooth_space::flank_of(side), tip->u, s), s})
       if (f.generated && !(f.work(f.parameter(v)).ratio > 0))
         return refuse(
@@ -240,6 +245,66 @@ class Inspection : public Refusals {
             "modified_roll_coefficients: the work stands still at a roll of {:.4f} deg, which cone distance {:.4f} mm "
             "needs",
             degrees(f.parameter(v)), -s);
+  }
+
+  void no_root(const CutterSpace& space, std::size_t i, double s) {
+    refuse(cut_key(gear_, i, "radial_distance"),
+           "radial_distance = {:.4f} mm: the {} blade makes no root at cone distance {:.4f} mm",
+           space.kernel().flanks[i].S, blade_of(i), -s);
+  }
+
+  /// Up a flank from its fillet to the face cone at s, as far as it goes with its outside outwards; no end where there
+  /// is no fillet.
+  struct Climb {
+    double end = 0, azimuth = 0;
+    bool arrived = false;
+  };
+  static Climb climb(const CutterSpace& space, std::size_t i, double s) {
+    const CutterKernel& k = space.kernel();
+    const Piece piece = tooth_space::flank_of(side_of(k, i));
+    const auto turns = [&](const Vec2& at) {
+      const auto q = space.at(piece, at.x(), at.y());
+      return q ? q->n.dot(q->pu.cross(q->pv)) : 0;
+    };
+    const double sense = turns(k.middle[i]), tip = space.tip(s);
+    const auto join = tooth_space::place_at(space, tooth_space::fillet_of(side_of(k, i)), k.flanks[i].alpha, s);
+    if (!join) return {-INFINITY};
+    Climb out{space.outline().chart.up(join->p)};
+    const double from = out.end;
+    Vec2 at(k.flanks[i].u_F, s);
+    for (int n = 0; n <= kRises; ++n) {
+      const double h = from + (tip - from) * n / kRises;
+      const auto next = k.solve(piece, s, h, at);
+      if (!next || !(turns(*next) * sense > 0)) return out;
+      at = *next;
+      out.end = h;
+    }
+    const auto q = space.at(piece, at.x(), at.y());
+    out.azimuth = q ? azimuth(q->p) : 0;
+    out.arrived = q.has_value();
+    return out;
+  }
+
+  /// A flank that the tooth does not have up to the face cone: by how much it ends below it, or where both meet.
+  void ends_early(const CutterSpace& space, std::size_t i, double s) {
+    const Climb own = climb(space, i, s), other = climb(space, 1 - i, s);
+    const auto& outline = space.outline();
+    if (own.arrived && other.arrived) {
+      const double turn = side_of(space.kernel(), i) > 0 ? own.azimuth - other.azimuth : other.azimuth - own.azimuth;
+      return pointed(s, outline.chart.r(s, space.tip(s)) * wrapped(turn + outline.pitch));
+    }
+    const std::size_t ends = own.arrived ? 1 - i : i;
+    const double end = (own.arrived ? other : own).end;
+    if (!std::isfinite(end)) return no_root(space, ends, s);
+    refuse("tip_angle",
+           "tip_angle = {:.4f} deg: the {} flank ends {:.4f} mm below the face cone at cone distance {:.4f} mm",
+           degrees(gear_.tip_angle_rad), ends == 0 ? "concave" : "convex", space.tip(s) - end, -s);
+  }
+  void pointed(double s, double land) {
+    refuse("tip_angle",
+           "tip_angle = {:.4f} deg: the tooth is pointed below the face cone at cone distance {:.4f} mm, its top land "
+           "is {:.4f} mm",
+           degrees(gear_.tip_angle_rad), -s, land);
   }
 
   void hand(const CutterSpace& space) {
@@ -272,9 +337,7 @@ class Inspection : public Refusals {
       return;
     }
     const double land = tooth_space::top_land_mm(space, s);
-    if (!(land > 0))
-      refuse("tip_angle",
-             "the tooth is pointed below the face cone at cone distance {:.4f} mm: a top land of {:.4f} mm", -s, land);
+    if (!(land > 0)) pointed(s, land);
   }
 
  public:
@@ -295,23 +358,101 @@ class Inspection : public Refusals {
   const SpiralBevelParameters& gear_;
 };
 
+/// What is wrong with a gear; its kernel and body where nothing is.
+struct Inspected {
+  std::vector<Refusal> refusals;
+  bool of_surfaces = false;  ///< the numbers themselves are no reason
+  std::shared_ptr<const CutterSpace> space;
+  double space_width_mm = 0;
+  tooth_space::BevelBody body;
+};
+
+Inspected inspected(const SpiralBevelParameters& gear) {
+  Inspected out;
+  Inspection inspection(gear);
+  inspection.numbers();
+  if (inspection.refusals.empty()) inspection.cuts();
+  out.refusals = inspection.refusals;
+  if (!out.refusals.empty()) return out;
+  out.of_surfaces = true;
+  auto made = set_up(gear);
+  if (auto* refusal = made.refused()) {
+    out.refusals = {std::move(*refusal)};
+    return out;
+  }
+  out.space_width_mm = made->space_width_mm;
+  out.space = std::make_shared<const CutterSpace>(made->kernel);
+  inspection.surfaces(*out.space);
+  out.refusals = std::move(inspection.refusals);
+  if (!out.refusals.empty()) return out;
+  out.body = body_of(gear, *out.space);
+  if (auto bad = out.body.refusal(out.space->outline())) out.refusals = {std::move(*bad)};
+  return out;
+}
+
+/// What would make a gear of one whose surfaces are refused, in words.
+std::string way_out(const SpiralBevelParameters& gear, const std::string& key) {
+  using Set = std::function<void(SpiralBevelParameters&, double)>;
+  const auto search = [&](double from, double to, const Set& set) {
+    return that_does(from, to, [&](double x) {
+      SpiralBevelParameters other = gear;
+      set(other, x);
+      return inspected(other).refusals.empty();
+    });
+  };
+  const auto up = [](double x) { return std::ceil(1e4 * x) / 1e4; };
+  const auto all_blades = [](SpiralBevelParameters& p, const auto& set) {
+    for (Cut& cut : p.cuts)
+      for (Blade& blade : cut.blades) set(blade);
+  };
+  const auto pressure = [&] {
+    double least = INFINITY;
+    for (std::size_t i = 0; i < 2; ++i)
+      least = std::min(least, gear.cuts[cut_of(gear, i)].blades[i].pressure_angle_rad);
+    return search(least, kMostPressure, [&](SpiralBevelParameters& p, double angle) {
+      all_blades(p, [&](Blade& b) { b.pressure_angle_rad = std::max(b.pressure_angle_rad, angle); });
+    });
+  };
+  if (key == "tip_angle") {
+    const auto tip = [](SpiralBevelParameters& p, double x) { p.tip_angle_rad = x; };
+    if (const auto x = search(gear.tip_angle_rad, gear.cuts.front().root_angle_rad, tip))
+      return fmt::format("; {:.4f} deg or less would do", told(degrees(*x)));
+    if (const auto x = search(gear.tip_angle_rad, gear.tip_angle_rad + kMostTip, tip))
+      return fmt::format("; {:.4f} deg or more would do", up(degrees(*x)));
+    if (const auto x = pressure())
+      return fmt::format("; a blade_pressure_angle of {:.4f} deg would do", up(degrees(*x)));
+    return "; none would do with these settings of the cutter";
+  }
+  const auto ends = [&](const char* name) { return key.ends_with(name); };
+  if (ends(".blade_pressure_angle")) {
+    const auto x = pressure();
+    return x ? fmt::format(": {:.4f} deg would do", up(degrees(*x))) : "";
+  }
+  if (ends(".sliding_base") || ends(".blade_point_radius")) {
+    double most = 0;
+    for (std::size_t i = 0; i < 2; ++i) most = std::max(most, gear.cuts[cut_of(gear, i)].blades[i].edge_radius_mm);
+    const auto x = search(most, 0.05 * most, [&](SpiralBevelParameters& p, double radius) {
+      all_blades(p, [&](Blade& b) { b.edge_radius_mm = std::min(b.edge_radius_mm, radius); });
+    });
+    return x ? fmt::format("; a tool_edge_radius of {:.4f} mm or less would do", told(*x))
+             : "; a deeper cut or other blades are needed";
+  }
+  if (ends(".radial_distance")) return "; another blade_point_radius or center_roll_position is needed";
+  return "";
+}
+
 }  // namespace
 
 Expected<SpiralBevelGear, std::vector<Refusal>> SpiralBevelGear::make(const SpiralBevelParameters& parameters) {
-  Inspection inspection(parameters);
-  inspection.numbers();
-  if (inspection.refusals.empty()) inspection.cuts();
-  if (!inspection.refusals.empty()) return std::move(inspection.refusals);
-  auto made = set_up(parameters);
-  if (auto* refusal = made.refused()) return std::vector{std::move(*refusal)};
+  Inspected found = inspected(parameters);
+  if (found.of_surfaces)
+    for (Refusal& refusal : found.refusals) refusal.diagnostic.message += way_out(parameters, refusal.key);
+  if (!found.refusals.empty()) return std::move(found.refusals);
   SpiralBevelGear gear;
   gear.parameters_ = parameters;
-  gear.space_width_mm_ = made->space_width_mm;
-  gear.space_ = std::make_shared<const CutterSpace>(made->kernel);
-  inspection.surfaces(*gear.space_);
-  if (!inspection.refusals.empty()) return std::move(inspection.refusals);
-  gear.body_ = body_of(parameters, *gear.space_);
-  if (auto bad = gear.body_.refusal(gear.space_->outline())) return std::vector{std::move(*bad)};
+  gear.space_width_mm_ = found.space_width_mm;
+  gear.space_ = std::move(found.space);
+  gear.body_ = found.body;
   return gear;
 }
 

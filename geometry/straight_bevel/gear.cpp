@@ -71,7 +71,7 @@ class Inspection : public Refusals {
              gear_.dedendum_mm, degrees(gear_.pitch_angle_rad - w.theta_f));
     const double h_root = -std::tan(w.theta_f) * w.R_i, h_tip = w.tip<double>(-w.R_i);
     if (!(h_tip > h_root))
-      refuse("tip_angle", "the face cone lies {:.4f} mm below the root cone at the small end", h_root - h_tip);
+      refuse_tip(-w.R_i, fmt::format("the face cone lies {:.4f} mm below the root cone", h_root - h_tip));
     if (gear_.tip_angle_rad && !(std::abs(*gear_.tip_angle_rad - gear_.pitch_angle_rad) < radians(45)))
       refuse("tip_angle", "tip_angle = {:.4f} deg is not within 45 deg of the pitch angle, {:.4f} deg",
              degrees(*gear_.tip_angle_rad), degrees(gear_.pitch_angle_rad));
@@ -132,10 +132,17 @@ class Inspection : public Refusals {
     for (const double s : {-w.R_e, -w.R_i}) {
       const double share = -s / w.R_e;  // widths shrink with the cone distance
       const double land = tooth_space::top_land_mm(space, s);
+      const auto join = tooth_space::place_at(space, Piece::flank_plus, space.borders(Piece::flank_plus).to, s);
+      const double sunk = join ? space.outline().chart.up(join->p) - space.tip(s) : NAN;
+      if (sunk >= 0) {
+        refuse_tip(s, fmt::format("the face cone lies {:.4f} mm below the end of the fillet", sunk));
+        return;
+      }
       if (land >= least * share) continue;
       if (!(land > 0))
-        refuse("addendum",
-               "the flanks do not reach the face cone at cone distance {:.4f} mm, or the tooth is pointed there", -s);
+        refuse_tip(s, land < 0
+                          ? fmt::format("the tooth is pointed below the face cone, its top land is {:.4f} mm", land)
+                          : std::string("the flanks end below the face cone"));
       else
         refuse(
             "addendum",
@@ -147,7 +154,36 @@ class Inspection : public Refusals {
   }
 
  private:
+  /// A face cone that the tooth does not reach, or the fillet passes: what states it there, and what would do.
+  void refuse_tip(double s, const std::string& what) {
+    const CrownKernel<double> w(gear_);
+    const bool angle = gear_.tip_angle_rad && s > -w.R_e;
+    const double R_e = w.R_e, natural = gear_.pitch_angle_rad + std::atan2(gear_.addendum_mm, R_e);
+    const double asked = angle ? *gear_.tip_angle_rad : gear_.addendum_mm;
+    std::string way;
+    if (helps_) {
+      const auto found = that_does(asked, angle ? natural : 0.02 * asked, [&](double x) {
+        StraightBevelParameters other = gear_;
+        (angle ? *other.tip_angle_rad : other.addendum_mm) = x;
+        const CrownKernel<double> kernel(other);
+        Inspection tried(other);
+        tried.helps_ = false;
+        tried.cones(kernel);
+        if (tried.refusals.empty()) tried.lands(CrownSpace(kernel));
+        return tried.refusals.empty();
+      });
+      const double unit = angle ? kDegree : 1;
+      if (found && *found < asked) way = fmt::format("; {:.4f} or less would do", told(*found / unit));
+      else if (found) way = fmt::format("; {:.4f} or more would do", std::ceil(1e4 * *found / unit) / 1e4);
+      else if (angle) way = fmt::format("; {:.4f} deg lets the tooth shrink with its cone distance", degrees(natural));
+      else way = "; more pressure angle, or another thickness_shift";
+    }
+    refuse(angle ? "tip_angle" : "addendum", "{} = {:.4f} {}: {} at cone distance {:.4f} mm{}",
+           angle ? "tip_angle" : "addendum", angle ? degrees(asked) : asked, angle ? "deg" : "mm", what, -s, way);
+  }
+
   const StraightBevelParameters& gear_;
+  bool helps_ = true;  ///< is it told what would do?
 };
 
 }  // namespace
