@@ -17,6 +17,7 @@
 namespace toothpath::process {
 namespace {
 
+constexpr double kApart = 0.5, kCloser = 0.25;  // radii: angle and stock rise and fall over one
 constexpr double kSameCut = 0.02;  // mm, at the tip and at the top of the cutting part: cuts this close meet the same
 
 /// Motions of one operation.
@@ -37,7 +38,7 @@ void for_operations(std::span<const path::ToolMotion> one_space, const LoadQuery
     std::vector<path::ToolMotion> motions = of_operation(one_space, n);
     if (motions.empty()) return;  // told elsewhere
     const cut::EngagementQuery stock{q.mills[n], q.bodies[n].cutting, before, q.in_blank, q.top_mm, 1, q.chart};
-    if (!take(n, motions, stock)) return;
+    if (!take(n, motions, stock) || n + 1 == q.mills.size()) return;
     removed.push_back(std::make_unique<cut::Removed>(std::move(motions), q.bodies[n], q.top_mm));
     before.push_back(removed.back().get());
   }
@@ -66,22 +67,27 @@ bool same_cuts(std::span<const path::ToolMotion> pieces, std::span<const path::T
   return piece == pieces.end();
 }
 
-/// So many motions of the median way lie within half a radius of the mill: one in so many is looked at, of longer ones
-/// too; what links meet shows their chip.
-std::size_t one_of(const std::vector<path::ToolMotion>& motions, double radius_mm) {
+/// So many motions of the median way lie within this: one in so many is looked at, of longer ones too; what links meet
+/// shows their chip.
+std::size_t one_of(const std::vector<path::ToolMotion>& motions, double apart_mm) {
   std::vector<double> ways;
   for (const path::ToolMotion& m : motions)
     if (const double way = (m.tip_to - m.tip_from).norm(); !m.rapid && way > 0) ways.push_back(way);
   if (ways.empty()) return 1;
   const auto half = ways.begin() + std::ptrdiff_t(ways.size() / 2);
   std::nth_element(ways.begin(), half, ways.end());
-  return std::size_t(std::clamp(0.5 * radius_mm / *half, 1.0, double(motions.size())));
+  return std::size_t(std::clamp(apart_mm / *half, 1.0, double(motions.size())));
 }
 
-/// The most of what one in so many motions are engaged by, where they are loaded, and the line of it.
-std::pair<double, int> most_engaged(const std::vector<path::ToolMotion>& motions, cut::EngagementQuery query,
-                                    std::size_t one_of) {
-  query.one_of = one_of;
+/// The same question of motions so many radii apart.
+cut::EngagementQuery thinned(cut::EngagementQuery query, const std::vector<path::ToolMotion>& motions,
+                             double radii_apart) {
+  query.one_of = one_of(motions, radii_apart * query.mill.cutting().largest_radius());
+  return query;
+}
+
+/// The most that motions are engaged by, where they are loaded, and the line of it.
+std::pair<double, int> most_engaged(const std::vector<path::ToolMotion>& motions, const cut::EngagementQuery& query) {
   const std::vector<cut::Engaged> engaged = cut::engagement_along(motions, query);
   std::pair<double, int> most{0, 0};
   for (std::size_t k = 0; k < engaged.size(); ++k)
@@ -128,31 +134,31 @@ double LoadJudge::planned_stock(std::span<const path::ToolMotion> plan, std::siz
   double stock = cut::kLeastStock;
   for_operations(plan, q_, [&](std::size_t n, const auto& motions, const cut::EngagementQuery& query) {
     if (n < of) return true;
-    const cut::AskedLoad least{q_.job.operations[n].feed_mm_min, 0, cut::kLeastStock / cut::kLoadFactor};
-    stock = std::max(stock, cut::overload_along(motions, query, least).stock_mm);
+    const cut::AskedLoad least{INFINITY, 0, cut::kLeastStock / cut::kLoadFactor};
+    stock = std::max(stock, cut::overload_along(motions, thinned(query, motions, kCloser), least).stock_mm);
     return false;
   });
   return stock;
 }
 
-double LoadJudge::planned_rad(std::span<const path::ToolMotion> plan, std::size_t of, bool all) const {
+double LoadJudge::planned_rad(std::span<const path::ToolMotion> plan, std::size_t of, double radii_apart) const {
   double most = 0;
   for_operations(plan, q_, [&](std::size_t n, const auto& motions, const cut::EngagementQuery& query) {
     if (n < of) return true;
-    most = most_engaged(motions, query, all ? 1 : one_of(motions, query.mill.cutting().largest_radius())).first;
+    most = most_engaged(motions, thinned(query, motions, radii_apart)).first;
     return false;
   });
   return most + cut::kEngagementStep;
 }
 
 /// Where the text leaves the plan, or an operation ahead did: the teeth against the greatest that they are engaged in
-/// the plan. Some motions of that come first, they may miss its greatest.
+/// the plan. Where few of its motions do not show as much, more of them are looked at.
 void LoadJudge::judge_engagement(std::span<const path::ToolMotion> plan, std::size_t n,
                                  const std::vector<path::ToolMotion>& motions, const cut::EngagementQuery& query,
                                  std::vector<std::string>& reasons) const {
-  const auto [engaged, line] = most_engaged(motions, query, one_of(motions, query.mill.cutting().largest_radius()));
-  if (engaged <= cut::kLoadFactor * planned_rad(plan, n, false)) return;
-  const double planned = planned_rad(plan, n, true);
+  const auto [engaged, line] = most_engaged(motions, thinned(query, motions, kApart));
+  if (engaged <= cut::kLoadFactor * planned_rad(plan, n, kApart)) return;
+  const double planned = planned_rad(plan, n, kCloser);
   if (engaged <= cut::kLoadFactor * planned) return;
   reasons.push_back(
       fmt::format("operation {}: at line {} its teeth are in the material over {:.0f} deg, in a plan of this job "
@@ -206,7 +212,8 @@ void LoadJudge::judge_by_plan(std::span<const path::ToolMotion> one_space, std::
     as_planned = as_planned && same_cuts(motions, of_operation(plan, n), q_.bodies[n].cutting.back().core.to);
     if (as_planned || !asks_plan(n)) return true;
     const double stock = planned_stock(plan, n);
-    judge_stock(n, cut::overload_along(motions, query, {INFINITY, 0, stock}), stock, reasons);
+    const auto load = cut::overload_along(motions, thinned(query, motions, kApart), {INFINITY, 0, stock});
+    judge_stock(n, load, stock, reasons);
     if (reasons.empty()) judge_engagement(plan, n, motions, query, reasons);
     return true;
   });

@@ -57,10 +57,11 @@ class LoadJudge {
 
  private:
   [[nodiscard]] bool asks_plan(std::size_t operation) const;
-  /// What an operation of the plan meets: stock, and the angle over which a tooth is in the material and a step, of all
-  /// motions or of some.
+  /// What an operation of the plan meets: stock, and the angle over which a tooth is in the material and a step, of
+  /// motions so far apart.
   [[nodiscard]] double planned_stock(std::span<const path::ToolMotion> plan, std::size_t operation) const;
-  [[nodiscard]] double planned_rad(std::span<const path::ToolMotion> plan, std::size_t operation, bool all) const;
+  [[nodiscard]] double planned_rad(std::span<const path::ToolMotion> plan, std::size_t operation,
+                                   double radii_apart) const;
   void judge_engagement(std::span<const path::ToolMotion> plan, std::size_t operation,
                         const std::vector<path::ToolMotion>& motions, const cut::EngagementQuery& query,
                         std::vector<std::string>& reasons) const;

@@ -75,7 +75,8 @@ class Along {
  public:
   Along(const std::vector<path::ToolMotion>& motions, const EngagementQuery& q)
       : motions_(motions), q_(q), rings_(rings_of(q.mill.cutting(), kEngagementStep)), stock_(motions, q) {
-    for (int k = 0; k < int(2 * kPi / kEngagementStep); ++k) around_.push_back(k * kEngagementStep);
+    for (int k = 0; k < int(2 * kPi / kEngagementStep); ++k)
+      around_.emplace_back(std::cos(k * kEngagementStep), std::sin(k * kEngagementStep));
   }
 
   std::vector<Engaged> run() const {
@@ -104,10 +105,11 @@ class Along {
     const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
     double steepest = 0;
     std::vector<Engaged> at_heights;
+    std::vector<Vec3> around;
+    for (const Vec2& turn : around_) around.emplace_back(turn.x() * u + turn.y() * v);
     for (const PointRing& ring : rings_) {
       Engaged here;
-      for (const double a : around_) {
-        const Vec3 out = std::cos(a) * u + std::sin(a) * v;
+      for (const Vec3& out : around) {
         const double along = (ring.normal_out * out + ring.normal_up * axis).dot(feed);
         if (along <= 0 || !stock_.stands(tip + ring.height * axis + ring.radius * out, done, kThinnestStock)) continue;
         here.angle_rad += kEngagementStep;
@@ -126,7 +128,7 @@ class Along {
   const std::vector<path::ToolMotion>& motions_;
   const EngagementQuery& q_;
   std::vector<PointRing> rings_;
-  std::vector<double> around_;
+  std::vector<Vec2> around_;  ///< cosine and sine
   Stock stock_;
 };
 
@@ -140,6 +142,7 @@ class OverloadAlong {
         chart_(q.chart),
         rings_(rings_of(q.mill.cutting(), kLoadRings)),
         radius_(q.mill.cutting().largest_radius()),
+        one_of_(q.one_of),
         asks_more_(asked.step_down_mm > 0 || asked.stock_mm < INFINITY),
         stock_(motions, q) {
     std::sort(rings_.begin(), rings_.end(), [](const auto& a, const auto& b) { return a.height < b.height; });
@@ -150,7 +153,7 @@ class OverloadAlong {
     std::vector<Overload> found(motions_.size());
     WorkShare share{double(motions_.size())};
     tbb::parallel_for(std::size_t{0}, motions_.size(), [&](std::size_t k) {
-      if (!motions_[k].rapid) found[k] = along(motions_[k], done[k]);
+      if (!motions_[k].rapid && k % one_of_ == 0) found[k] = along(motions_[k], done[k]);
       share.add();
     });
     Overload most;
@@ -177,7 +180,9 @@ class OverloadAlong {
     Overload most;
     const double way = (m.tip_to - m.tip_from).norm();
     if (way == 0) return most;
-    const double quick = m.minutes > 0 ? way / m.minutes / asked_.feed_mm_min : INFINITY;
+    const double quick = asked_.feed_mm_min == INFINITY ? 0
+                         : m.minutes > 0                ? way / m.minutes / asked_.feed_mm_min
+                                                        : INFINITY;
     if (quick <= kLoadFactor && !asks_more_) return most;  // no chip is larger than the feed
     const int places = std::max(1, int(std::ceil(way / (kLoadPlaces * radius_))));
     for (int k = 0; k < places; ++k)
@@ -245,6 +250,7 @@ class OverloadAlong {
   tooth_space::Chart chart_;
   std::vector<PointRing> rings_;
   double radius_;
+  std::size_t one_of_;
   bool asks_more_;  ///< than about chips
   Stock stock_;
 };

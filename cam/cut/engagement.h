@@ -37,8 +37,8 @@ inline constexpr double kThinnestStock = 1e-3;
 /// shorter, and so of chips thinner than its sine, nothing may be seen.
 inline constexpr double kEngagementStep = 0.1745;
 
-/// What an operation is asked to take off: feed, depth of its layers (0: it has none), the stock that it meets
-/// (infinite: not known).
+/// What an operation is asked to take off: feed and the stock that it meets (infinite: not known), depth of its layers
+/// (0: it has none).
 struct AskedLoad {
   double feed_mm_min = 0, step_down_mm = 0, stock_mm = 0;
 };
