@@ -68,6 +68,10 @@ struct Mate {
 process::ValueOrErrors<std::optional<Mate>> mate_of(const ContactRequest& request, const job::Job& job,
                                                     const process::GearProcess& gear, app::StageClock& clock) {
   std::optional<Mate> out;
+  if (job.bevel_gear() != nullptr && (request.shaft_angle_deg || request.axis_distance_mm))
+    return std::vector{fail_at(job.where("gear.type"),
+                               "type = \"{}\" rolls on the shafts that it was made for: leave out {}", job.gear_type(),
+                               request.shaft_angle_deg ? "--shaft-angle" : "--axis-distance")};
   if (request.other_job.empty() || job.bevel_gear() != nullptr) {
     if (auto accepted = gear.accepts(request); !accepted) return std::vector{accepted.error()};
     return out;

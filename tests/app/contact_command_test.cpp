@@ -236,7 +236,13 @@ TEST(ContactCommand, TwoJobsThatDoNotRoll) {
       {3, {spiral, "--mate", cone}, "do not roll on each other with"},
       {3, {grid, "--mate", cone}, "--shaft-angle DEG is needed"},
       {3, {spiral, "--mate", kSamples + "/bevel_wheel.toml"}, "rolls with its own type alone"},
-      {3, {kSamples + "/dhfg_paper.toml", "--mate", cone}, "does not run with a face gear"}};
+      {3, {kSamples + "/dhfg_paper.toml", "--mate", cone}, "does not run with a face gear"},
+      {3,
+       {kSamples + "/dhfg_paper.toml", "--mate", kSamples + "/cylindrical_pinion.toml", "--shaft-angle", "90"},
+       "the face gear says them, as shaft_angle and offset"},
+      {3,
+       {kSamples + "/bevel_wheel.toml", "--mate", kSamples + "/bevel_pinion.toml", "--shaft-angle", "90"},
+       "rolls on the shafts that it was made for"}};
   for (const auto& [code, words, said] : refused) {
     std::vector<std::string> arguments = {"contact", "--out", dir / "out"};
     arguments.insert(arguments.end(), words.begin(), words.end());

@@ -115,14 +115,7 @@ class FaceProcess final : public process::GearProcess {
   [[nodiscard]] std::unique_ptr<inspection::TouchedPart> touched() const override {
     return std::make_unique<inspection::TouchedTeeth>(drawn_solid(gear_), gear_.parameters().allowance_top_mm);
   }
-  [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
-    if (asked.shaft_angle_deg || asked.axis_distance_mm)
-      return fail_at(
-          job_.where("gear.type"),
-          "type = \"face_gear\" says its shaft_angle and offset: --shaft-angle and --axis-distance belong to "
-          "two jobs that do not");
-    return Ok{};
-  }
+  [[nodiscard]] Status accepts(const process::ContactAsked&) const override { return Ok{}; }
   [[nodiscard]] process::ValueOrErrors<process::CutFlanks> measured(const job::MeasuredInput& files) const override {
     return measured_flanks(gear_, files);
   }
