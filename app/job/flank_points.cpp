@@ -11,30 +11,31 @@
 namespace toothpath::job {
 namespace {
 
-constexpr std::array<std::string_view, 9> kNames = {"flank", "row", "column", "x", "y", "z", "i", "j", "k"};
+constexpr std::array<std::string_view, 9> kGridColumns = {"flank", "row", "column", "x", "y", "z", "i", "j", "k"};
 constexpr std::string_view kPlaces = "flank,row,column,x,y,z", kWithNormals = "flank,row,column,x,y,z,i,j,k";
 constexpr int kMostNumber = 999;  // of a row or column
 
-struct Line {
+struct GridLine {
   int number = 0, side = 0, row = 0, column = 0;
   std::array<double, 9> value{};
 };
 
 /// @param count  numbers that the header names
-Result<Line> parse_line(const std::vector<inspection::TableCell>& cells, std::size_t count, const SourcePosition& at) {
+Result<GridLine> parse_grid_line(const std::vector<inspection::TableCell>& cells, std::size_t count,
+                                 const SourcePosition& at) {
   if (cells.size() != count)
     return fail_at(at, "{} columns, must be {}: {}", cells.size(), count,
-                   count == kNames.size() ? kWithNormals : kPlaces);
-  Line line;
+                   count == kGridColumns.size() ? kWithNormals : kPlaces);
+  GridLine line;
   line.number = at.line;
   for (std::size_t k = 0; k < count; ++k) {
     const SourcePosition here{at.file, at.line, cells[k].column};
     double& value = line.value[k];
     if (!inspection::read_cell(cells[k].text, value))
-      return fail_at(here, "{} = \"{}\" is no finite number", kNames[k], printable(cells[k].text));
+      return fail_at(here, "{} = \"{}\" is no finite number", kGridColumns[k], printable(cells[k].text));
     if (k == 0 && value != 1 && value != -1) return fail_at(here, "flank = {:g} must be 1 or -1", value);
     if ((k == 1 || k == 2) && !(value >= 0 && value <= kMostNumber && value == std::floor(value)))
-      return fail_at(here, "{} = {:g} is no whole number from 0 to {}", kNames[k], value, kMostNumber);
+      return fail_at(here, "{} = {:g} is no whole number from 0 to {}", kGridColumns[k], value, kMostNumber);
   }
   line.side = int(line.value[0]);
   line.row = int(line.value[1]);
@@ -42,10 +43,10 @@ Result<Line> parse_line(const std::vector<inspection::TableCell>& cells, std::si
   return line;
 }
 
-Result<flank_grid::GridPoints> grid_of(const std::vector<Line>& lines, int side, bool normals,
+Result<flank_grid::GridPoints> grid_of(const std::vector<GridLine>& lines, int side, bool normals,
                                        const SourcePosition& end) {
   flank_grid::GridPoints grid;
-  for (const Line& line : lines) {
+  for (const GridLine& line : lines) {
     if (line.side != side) continue;
     grid.rows = std::max(grid.rows, line.row + 1);
     grid.columns = std::max(grid.columns, line.column + 1);
@@ -54,7 +55,7 @@ Result<flank_grid::GridPoints> grid_of(const std::vector<Line>& lines, int side,
   grid.place.resize(count);
   grid.line.resize(count);
   if (normals) grid.normal.resize(count);
-  for (const Line& line : lines) {
+  for (const GridLine& line : lines) {
     if (line.side != side) continue;
     const std::size_t k = grid.index(line.row, line.column);
     if (grid.line[k] != 0)
@@ -105,7 +106,7 @@ std::string flank_points_text(const FlankPoints& points) {
 }
 
 Result<FlankPoints> parse_flank_points(std::string_view text, const std::string& file) {
-  std::vector<Line> lines;
+  std::vector<GridLine> lines;
   int number = 0;
   std::size_t count = 0;  // of columns; 0: the header was not met yet
   while (!text.empty()) {
@@ -122,16 +123,16 @@ Result<FlankPoints> parse_flank_points(std::string_view text, const std::string&
     }
     const auto cells = inspection::number_cells(row);
     if (std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.text.empty(); })) continue;
-    auto line = parse_line(cells, count, at);
+    auto line = parse_grid_line(cells, count, at);
     if (!line) return line.error();
     lines.push_back(*line);
   }
   FlankPoints out;
   for (const int side : {1, -1}) {
-    if (std::none_of(lines.begin(), lines.end(), [&](const Line& line) { return line.side == side; }))
+    if (std::none_of(lines.begin(), lines.end(), [&](const GridLine& line) { return line.side == side; }))
       return fail_at({file, std::max(number, 1), 1}, "flank {} has no point: {} names both flanks of one space", side,
                      count == 9 ? kWithNormals : kPlaces);
-    auto grid = grid_of(lines, side, count == kNames.size(), {file, std::max(number, 1), 1});
+    auto grid = grid_of(lines, side, count == kGridColumns.size(), {file, std::max(number, 1), 1});
     if (!grid) return grid.error();
     (side > 0 ? out.plus : out.minus) = std::move(*grid);
   }

@@ -10,7 +10,7 @@ namespace {
 using tooth_space::Borders;
 using tooth_space::Piece;
 
-constexpr int kLooks = 64;
+constexpr int kTurnLooks = 64;
 constexpr double kFlat = 0.01;  // w_0 where the contact does not swing: any is as good
 
 /// tan(beta_c) rho_A / (R_c tan(delta)) of a path.
@@ -36,8 +36,8 @@ WallKernel::WallKernel(const BevelGear& gear, std::size_t half)
     std::get<Pair<tooth_space::BoxSecond>>(walls_)[k] = wall_over<tooth_space::BoxSecond>(wall);
     const double from = std::min(of.beta_from[k], of.beta_to[k]), to = std::max(of.beta_from[k], of.beta_to[k]);
     turn_[k] = INFINITY;
-    for (int n = 0; n <= kLooks; ++n)
-      turn_[k] = std::min(turn_[k], wall.trace.h * turn_at(wall, from + (to - from) * n / kLooks));
+    for (int n = 0; n <= kTurnLooks; ++n)
+      turn_[k] = std::min(turn_[k], wall.trace.h * turn_at(wall, from + (to - from) * n / kTurnLooks));
     least_turn_ = std::min(least_turn_, turn_[k]);
   }
   const bool crown_wheel = of.walls[0].trace.cos_delta == 0;  // its contacts do not swing

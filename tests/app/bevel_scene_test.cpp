@@ -11,7 +11,7 @@ namespace toothpath::test {
 namespace {
 
 /// A solid turned about z from a closed outline (r, z), clockwise in that plane.
-mesh::TriangleMesh turned(const std::vector<Vec2>& outline, int n = 90) {
+mesh::TriangleMesh solid_of_revolution(const std::vector<Vec2>& outline, int n = 90) {
   mesh::TriangleMesh mesh;
   const auto m = int(outline.size());
   for (int k = 0; k < n; ++k)
@@ -43,7 +43,7 @@ class BevelScene : public CheckScene {
   /// The turned blank with its face cone at a height above the pitch cone.
   static mesh::TriangleMesh blank(double height) {
     const Vec2 front = place(gear_->R_i(), height), back = place(gear_->R_e(), height), foot = place(gear_->R_e(), -4);
-    return turned({Vec2(2, front.y()), Vec2(2, foot.y()), foot, back, front});
+    return solid_of_revolution({Vec2(2, front.y()), Vec2(2, foot.y()), foot, back, front});
   }
   /// A cube about a point of the middle of a tooth space, `up` above the root along the tool axis.
   static mesh::TriangleMesh cube(double ell, int tooth, double up, double half) {
@@ -112,7 +112,7 @@ TEST_F(BevelScene, TheProfileAndNotACylinderIsJudged) {
   const double run_out = gear_->R_e() + wide + 1.0;  // the passes end here
   const auto ring = [&](double gap) {
     const double from = run_out + low + gap;
-    return turned(
+    return solid_of_revolution(
         {place(from, -h_f - 0.6), place(from + 1, -h_f - 0.6), place(from + 1, -h_f + 0.1), place(from, -h_f + 0.1)});
   };
   ASSERT_LT(low + 0.15, wide);

@@ -4,20 +4,19 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 
 #include "geometry/base/dual.h"
 #include "tests/cam/line/line_cases.h"
 #include "tests/support/brute_force_face_gear.h"
 #include "tests/support/brute_force_gear_solid.h"
+#include "tests/support/fifty_digits.h"
 #include "tests/support/random.h"
 
 namespace toothpath::test {
 namespace {
 
 using namespace line;
-using F50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 FaceFlank task_of(const WorkedPose& w) { return {made(w.gear), w.zone, w.side}; }
 /// In the frame of tooth 0.

@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 
 #include "cam/clearance/clearance.h"
@@ -14,6 +13,7 @@
 #include "geometry/base/angle.h"
 #include "tests/cam/finger/jobs.h"
 #include "tests/support/brute_force_line.h"
+#include "tests/support/fifty_digits.h"
 #include "tests/support/plain_frustum.h"
 #include "tests/support/random.h"
 #include "tests/support/sample_tools.h"
@@ -57,8 +57,6 @@ TEST(AptCutter, DrawsTheCuttingPart) {
   t.type = tool::CutterType::finger_mill;
   EXPECT_FALSE(tool::apt_cutter(t));
 }
-
-using F50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 tool::CutterData tapered(double r_0 = 0.25, double half_angle_deg = 5) {
   tool::CutterData d;

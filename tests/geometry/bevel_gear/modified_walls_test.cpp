@@ -2,7 +2,6 @@
 // docs/modifications.md, the swept solid, what the words say against what is gone, and what is refused.
 #include "geometry/bevel_gear/modified_walls.h"
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 #include <random>
 
@@ -11,6 +10,7 @@
 #include "geometry/modification/separate.h"
 #include "tests/geometry/bevel_gear/samples.h"
 #include "tests/support/brute_force_bevel_gear.h"
+#include "tests/support/fifty_digits.h"
 #include "tests/support/modified_flank.h"
 
 namespace toothpath {
@@ -20,7 +20,7 @@ using namespace bevel_test;
 using modification::Kind;
 using modification::Law;
 using modification::Modification;
-using F50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
+using test::F50;
 
 Modification only(Modification m, modification::Flanks flank, std::optional<int> zone = {}) {
   m.flanks = flank;

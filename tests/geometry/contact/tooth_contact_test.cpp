@@ -3,18 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include "geometry/contact/face_gear_forces.h"
 #include "geometry/contact/touch_search.h"
 #include "tests/support/brute_force_contact.h"
 #include "tests/support/face_gear_cases.h"
+#include "tests/support/fifty_digits.h"
 
 namespace toothpath::test {
 namespace {
-
-using Wide =
-    boost::multiprecision::number<boost::multiprecision::cpp_bin_float_50::backend_type, boost::multiprecision::et_off>;
 
 const std::vector<contact::Misalignment>& moves() {
   static const std::vector<contact::Misalignment> list = {
@@ -104,7 +100,7 @@ void expect_common_points(double tolerance) {
 }
 
 TEST(ContactPath, FlanksShareEveryPointAndNormal) { expect_common_points<double>(2e-13); }
-TEST(ContactPath, FlanksShareEveryPointAndNormalIn50Digits) { expect_common_points<Wide>(1e-44); }
+TEST(ContactPath, FlanksShareEveryPointAndNormalIn50Digits) { expect_common_points<F50>(1e-44); }
 
 /// A pinion that is the shaper touches along lines: every B is a common normal.
 TEST(ContactPath, AsManyTeethAsTheShaperGivesLineContact) {

@@ -2,7 +2,6 @@
 // space promises: exact derivatives, enclosures that hold, feet, tip edges, ball centres.
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 #include <functional>
 #include <tuple>
@@ -10,6 +9,7 @@
 #include "geometry/tooth_space/curvature.h"
 #include "geometry/tooth_space/offset_sheet.h"
 #include "tests/geometry/cylindrical/samples.h"
+#include "tests/support/fifty_digits.h"
 #include "tests/support/random.h"
 
 namespace toothpath::test {
@@ -147,7 +147,6 @@ TEST(InvoluteSpace, FlanksAreInvoluteHelicoids) {
 }
 
 TEST(InvoluteSpace, AgreesWithFiftyDigits) {
-  using F50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
   for (const SpaceSample& s : samples()) {
     const auto gear = made(s.parameters);
     const auto& space = gear.space(s.zone);

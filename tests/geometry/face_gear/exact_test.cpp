@@ -1,15 +1,14 @@
 // Identities of the flank and fillet in 50 digits, where only a wrong formula can be off, and how close double comes.
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 
 #include "tests/support/face_gear_cases.h"
+#include "tests/support/fifty_digits.h"
 
 namespace toothpath::test {
 namespace {
 
-using F50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 using Vec = Vec3T<F50>;
 
 double as_double(const F50& x) { return static_cast<double>(x); }

@@ -95,7 +95,7 @@ TEST(FaceGearMake, GrooveFloor) {
   EXPECT_TRUE(face_gear::FaceGear::make(g).has_value());
 }
 
-struct Refusal {
+struct RefusedGear {
   const char* name;
   const char* key;
   std::vector<std::string> words;  // all of them in the message: quantity, value, limit
@@ -103,8 +103,8 @@ struct Refusal {
   bool helical = false;
 };
 
-const std::vector<Refusal>& refusals() {
-  static const std::vector<Refusal> list = {
+const std::vector<RefusedGear>& refusals() {
+  static const std::vector<RefusedGear> list = {
       {"undercut",
        "zone[0].inner_radius",
        {"129.0000", "undercut", "R1c = 129.5097", "side -1"},

@@ -4,16 +4,12 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
-
 #include "geometry/contact/pinion.h"
 #include "tests/geometry/loaded/trial_gear.h"
+#include "tests/support/fifty_digits.h"
 
 namespace toothpath::test {
 namespace {
-
-using Wide =
-    boost::multiprecision::number<boost::multiprecision::cpp_bin_float_50::backend_type, boost::multiprecision::et_off>;
 
 std::vector<loaded::ContactLine> lines_of(const face_gear::FaceGear& gear, int ring, int side, double phase,
                                           double approach = 0) {
@@ -59,7 +55,7 @@ TEST(ContactLine, PlacesTouchThePinionAtTheirTurn) {
 
 TEST(ContactLine, RelativeCurvatureHasRankOneIn50Digits) {
   const auto gear = trial_gear();
-  const auto wide = face_gear::make_surface<Wide>(gear.parameters(), gear.parameters().zones[1].helix_angle_rad);
+  const auto wide = face_gear::make_surface<F50>(gear.parameters(), gear.parameters().zones[1].helix_angle_rad);
   for (const auto& line : lines_of(gear, 1, 1, 0))
     for (const auto& s : line.segments) {
       const auto H = loaded::relative_curvature(gear.rings()[1].surface, 1, s.theta, s.B);
@@ -67,8 +63,8 @@ TEST(ContactLine, RelativeCurvatureHasRankOneIn50Digits) {
       EXPECT_LT(std::abs(H.gauss()), 1e-15 * trace * trace);
       EXPECT_GT(1 / trace, 28 - 1);
       EXPECT_LT(1 / trace, 48 + 1);
-      const auto exact = loaded::relative_curvature(wide, 1, Wide(s.theta), Wide(s.B));
-      const Wide sum = exact.ee + exact.ll;
+      const auto exact = loaded::relative_curvature(wide, 1, F50(s.theta), F50(s.B));
+      const F50 sum = exact.ee + exact.ll;
       EXPECT_LT(static_cast<double>(abs(exact.gauss())), 1e-45 * static_cast<double>(sum * sum));
       // The line runs where nothing bends: its direction has no relative curvature.
       const auto basis = gear.rings()[1].surface.flank_basis(1, s.theta, s.B);

@@ -20,14 +20,14 @@ loaded::PairOptions coarse() {
     body->bricks.across = 3, body->bricks.flank = 4, body->bricks.face = 5;
   return options;
 }
-loaded::LoadedPair pair_of(const loaded::PairOptions& options, int side = 1, double helix_deg = 30) {
+loaded::LoadedPair face_pair_of(const loaded::PairOptions& options, int side = 1, double helix_deg = 30) {
   auto made = loaded::make_loaded_pair(trial_gear(30, 6, helix_deg), side, 30, options);
   if (!made) throw std::invalid_argument(made.error().message);
   return std::move(made).value();
 }
 /// The same bodies for the tests that change load and gaps only.
 const loaded::LoadedPair& coarse_pair() {
-  static const loaded::LoadedPair pair = pair_of(coarse());
+  static const loaded::LoadedPair pair = face_pair_of(coarse());
   return pair;
 }
 loaded::LoadedPosition position_of(const loaded::LoadedPair& pair, const loaded::Load& load, double phase) {
@@ -40,7 +40,7 @@ double largest_pressure(const loaded::LoadedPosition& p) { return std::max(p.pre
 
 TEST(LoadedPair, TrialFourOfTheWorkedValues) {
   // Four positions, pinion held, default bricks; docs/loaded_contact.md.
-  const auto pair = pair_of({});
+  const auto pair = face_pair_of({});
   loaded::Load load;
   load.torque_nmm = kTorque;
   load.positions = 4;
@@ -112,7 +112,7 @@ TEST(LoadedPair, AFloatingPinionSharesEqually) {
 TEST(LoadedPair, LoadAndModulusScaleTogether) {
   auto options = coarse();
   for (auto* body : {&options.gear, &options.pinion}) body->E *= 8;
-  const auto stiff = pair_of(options);
+  const auto stiff = face_pair_of(options);
   loaded::Load load, more;
   load.torque_nmm = kTorque;
   more.torque_nmm = 8 * kTorque;
@@ -124,13 +124,13 @@ TEST(LoadedPair, LoadAndModulusScaleTogether) {
     EXPECT_NEAR(a.segments[k].half_width, b.segments[k].half_width, 1e-8);
   // Nearly rigid bodies: hardly any approach, and shares all the same.
   for (auto* body : {&options.gear, &options.pinion}) body->E = 1e12;
-  const auto rigid = position_of(pair_of(options), load, 0.3);
+  const auto rigid = position_of(face_pair_of(options), load, 0.3);
   EXPECT_LT(rigid.approach_mm, 1e-8);
   EXPECT_NEAR(outer_share(rigid), outer_share(a), 0.03);
 }
 
 TEST(LoadedPair, TheMirrorImageCarriesTheSame) {
-  const auto mirrored = pair_of(coarse(), -1, -30);
+  const auto mirrored = face_pair_of(coarse(), -1, -30);
   loaded::Load load;
   load.torque_nmm = kTorque;
   for (const double phase : {0.0, 0.3}) {

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 #include <cmath>
 #include <random>
@@ -11,6 +10,7 @@
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/limits.h"
 #include "geometry/face_gear/space_sheet.h"
+#include "tests/support/fifty_digits.h"
 #include "tests/support/modified_flank.h"
 #include "tests/support/sample_gears.h"
 
@@ -22,7 +22,6 @@ using modification::Flanks;
 using modification::Kind;
 using modification::Law;
 using modification::Modification;
-using F50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 constexpr modification::Rectangle kOn{4, 60, 65};
 

@@ -145,12 +145,12 @@ TEST_P(Conditions, OurOwnTextsAreClean) {
 }
 
 /// A program with one F changed, and what was changed.
-struct Edit {
+struct FeedEdit {
   std::string text, told;
 };
 
 /// F of some lines ten and a hundred times as great; and such an F in some lines that have none.
-std::vector<Edit> raised_feeds(const std::string& text, bool apt) {
+std::vector<FeedEdit> raised_feeds(const std::string& text, bool apt) {
   const std::regex feed(R"((^| )F([0-9]+\.?[0-9]*)( |$)|FEDRAT/([0-9.]+))");
   const std::regex bare(apt ? R"(^GOTO/.*)" : R"(^[^(;]*[XYZ]=?[+-]?[0-9][^F]*$)");
   const std::vector<std::string> lines = lines_of(text);
@@ -160,7 +160,7 @@ std::vector<Edit> raised_feeds(const std::string& text, bool apt) {
     else if (std::regex_match(lines[i], bare)) without.push_back(i);
   }
   std::mt19937 random(18);
-  std::vector<Edit> out;
+  std::vector<FeedEdit> out;
   for (auto* places : {&with, &without}) {
     std::shuffle(places->begin(), places->end(), random);
     places->resize(std::min<std::size_t>(places->size(), 10));
@@ -188,7 +188,7 @@ TEST_P(Conditions, FeedsThatSomebodyRaised) {
   const Judged own = judged(text_, machine_);
   const double c_most = degrees(machine_.chain.table[0].max_speed), a_most = degrees(machine_.chain.table[1].max_speed);
   int dangerous = 0, harmless = 0;
-  for (const Edit& edit : raised_feeds(text_, is("apt"))) {
+  for (const FeedEdit& edit : raised_feeds(text_, is("apt"))) {
     SCOPED_TRACE(edit.told);
     const Judged now = judged(edit.text, machine_);
     if (!now.refused.empty()) continue;  // F in a rapid of its own kind: not read

@@ -235,18 +235,18 @@ TEST(PathFaultsInText, EndlessLoopsEnd) {
     return s ? std::string("none") : s.error().text();
   };
   const std::size_t many = 1'000'000'000'000;  // no help: what follows is found by itself
-  struct Case {
+  struct Loop {
     std::string body, words;
   };
-  for (const Case& c : {
-           Case{"o1 while [1]\no1 endwhile\n", "p:4:1: error: o1: the loop never ends: after 1 turns"},
-           Case{"#1=0\no1 while [#1 LT 5]\nG0 X1\nG0 X2\no1 endwhile\n", "p:5:1: error: o1: the loop never ends"},
-           Case{"#1=0\no1 while [#1 LT 5]\n#1=[#1+0]\no1 endwhile\n", "never ends"},
-           Case{"#1=0\no1 while [#1 LT 5]\n#1=[1-#1]\nG0 X#1\no1 endwhile\n", "never ends"},
-           Case{"#1=0\no1 while [#1 GE 0]\n#1=[[#1+1] MOD 1000]\no1 endwhile\n", "never ends"},
-           Case{"o9 sub\nG0 X#1\no9 endsub\n#40=1\no1 while [#40]\no9 call [2]\no9 call [3]\no1 endwhile\n",
+  for (const Loop& c : {
+           Loop{"o1 while [1]\no1 endwhile\n", "p:4:1: error: o1: the loop never ends: after 1 turns"},
+           Loop{"#1=0\no1 while [#1 LT 5]\nG0 X1\nG0 X2\no1 endwhile\n", "p:5:1: error: o1: the loop never ends"},
+           Loop{"#1=0\no1 while [#1 LT 5]\n#1=[#1+0]\no1 endwhile\n", "never ends"},
+           Loop{"#1=0\no1 while [#1 LT 5]\n#1=[1-#1]\nG0 X#1\no1 endwhile\n", "never ends"},
+           Loop{"#1=0\no1 while [#1 GE 0]\n#1=[[#1+1] MOD 1000]\no1 endwhile\n", "never ends"},
+           Loop{"o9 sub\nG0 X#1\no9 endsub\n#40=1\no1 while [#40]\no9 call [2]\no9 call [3]\no1 endwhile\n",
                 "never ends"},
-           Case{"#1=0\no1 while [#1 LT 5]\n#2=0\no2 while [#2 LT 1]\no2 endwhile\no1 endwhile\n",
+           Loop{"#1=0\no1 while [#1 LT 5]\n#2=0\no2 while [#2 LT 1]\no2 endwhile\no1 endwhile\n",
                 "o2: the loop never ends"},
        })
     EXPECT_NE(refusal(c.body, many, many).find(c.words), std::string::npos) << c.body << refusal(c.body, many, many);
