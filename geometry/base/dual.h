@@ -33,31 +33,31 @@ struct Dual {
   Dual& operator*=(const Dual& b) { return *this = *this * b; }
   Dual& operator/=(const Dual& b) { return *this = *this / b; }
 
-  friend Dual operator+(const Dual& a, const Dual& b) {
+  [[gnu::always_inline]] friend Dual operator+(const Dual& a, const Dual& b) {
     Dual r;
     r.v = a.v + b.v;
     for (std::size_t k = 0; k < N; ++k) r.d[k] = a.d[k] + b.d[k];
     return r;
   }
-  friend Dual operator-(const Dual& a, const Dual& b) {
+  [[gnu::always_inline]] friend Dual operator-(const Dual& a, const Dual& b) {
     Dual r;
     r.v = a.v - b.v;
     for (std::size_t k = 0; k < N; ++k) r.d[k] = a.d[k] - b.d[k];
     return r;
   }
-  friend Dual operator-(const Dual& a) {
+  [[gnu::always_inline]] friend Dual operator-(const Dual& a) {
     Dual r;
     r.v = -a.v;
     for (std::size_t k = 0; k < N; ++k) r.d[k] = -a.d[k];
     return r;
   }
-  friend Dual operator*(const Dual& a, const Dual& b) {
+  [[gnu::always_inline]] friend Dual operator*(const Dual& a, const Dual& b) {
     Dual r;
     r.v = a.v * b.v;
     for (std::size_t k = 0; k < N; ++k) r.d[k] = a.d[k] * b.v + a.v * b.d[k];
     return r;
   }
-  friend Dual operator/(const Dual& a, const Dual& b) {
+  [[gnu::always_inline]] friend Dual operator/(const Dual& a, const Dual& b) {
     Dual r;
     r.v = a.v / b.v;
     for (std::size_t k = 0; k < N; ++k) r.d[k] = (a.d[k] - r.v * b.d[k]) / b.v;
