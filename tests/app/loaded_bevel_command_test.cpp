@@ -46,30 +46,35 @@ std::vector<std::vector<std::string>> inspection_of(const TestDir& dir, const st
   }
   return out;
 }
-/// The walls of one job as a measuring machine finds them at the points of another: measured.csv.
-void write_measured(const TestDir& dir, const std::string& nominal, const std::string& made) {
-  const TestDir other;
-  const auto asked = inspection_of(dir, nominal), there = inspection_of(other, made);
-  ASSERT_EQ(asked.size(), there.size());
-  std::string out = "zone,flank,row,column,x,y,z,i,j,k,deviation_um\n";
-  for (std::size_t n = 1; n < asked.size(); ++n) {
-    double along = 0;
-    for (std::size_t k = 4; k < 7; ++k)
-      along += (std::stod(there[n].at(k)) - std::stod(asked[n].at(k))) * std::stod(asked[n].at(k + 3));
-    for (const auto& cell : asked[n]) out += cell + ",";
-    out += std::to_string(along * 1000) + "\n";
-  }
-  write_file(dir / "measured.csv", out);
-}
-
 const std::string kCrowning = "[[gear.modification]]\nkind = \"lead_crowning\"\namount = 0.03\n\n";
+
+/// The walls of the crowned pinion as a measuring machine finds them at the points of the plain one, once for all
+/// tests.
+const std::string& measured_crowning() {
+  static const std::string text = [] {
+    const TestDir plain, crowned;
+    const auto asked = inspection_of(plain, pinion_job(plain, "")),
+               there = inspection_of(crowned, pinion_job(crowned, "", kCrowning));
+    if (asked.size() != there.size()) throw std::runtime_error("grids of two sizes");
+    std::string out = "zone,flank,row,column,x,y,z,i,j,k,deviation_um\n";
+    for (std::size_t n = 1; n < asked.size(); ++n) {
+      double along = 0;
+      for (std::size_t k = 4; k < 7; ++k)
+        along += (std::stod(there[n].at(k)) - std::stod(asked[n].at(k))) * std::stod(asked[n].at(k + 3));
+      for (const auto& cell : asked[n]) out += cell + ",";
+      out += std::to_string(along * 1000) + "\n";
+    }
+    return out;
+  }();
+  return text;
+}
 
 /// A crowning that was measured is rolled and loaded like one that the drawing asks for.
 TEST(LoadedBevelCommand, AMeasuredCrowningRollsLikeTheDrawnOne) {
   const TestDir dir, other;
   const std::string plain = pinion_job(dir, "");
   const std::string crowned = pinion_job(other, "", kCrowning);
-  write_measured(dir, plain, crowned);
+  write_file(dir / "measured.csv", measured_crowning());
   const Json measured = pair_of(plain, dir / "a", {"--measured", dir / "measured.csv"});
   EXPECT_EQ(measured.at("cut_surface"), "measured");
   const Json drawn = pair_of(crowned, other / "b");
@@ -143,10 +148,8 @@ TEST(LoadedBevelCommand, FrictionAndRootStressOnRequest) {
 
 /// Measured files that are none of this gear are refused where they are wrong.
 TEST(LoadedBevelCommand, RefusesMeasuredFilesThatDoNotFit) {
-  const TestDir dir, other;
-  const std::string plain = pinion_job(dir, "");
-  write_measured(dir, plain, pinion_job(other, "", kCrowning));
-  const std::string good = file_text(dir / "measured.csv");
+  const TestDir dir;
+  const std::string plain = pinion_job(dir, ""), good = measured_crowning();
   const auto refused = [&](const std::string& text, const std::string& words, std::vector<std::string> more = {}) {
     write_file(dir / "bad.csv", text);
     std::vector<std::string> arguments = {"contact",    plain,           "--mate", kWheel,

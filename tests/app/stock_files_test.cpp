@@ -27,10 +27,29 @@ nlohmann::json checked(const TestDir& dir, const std::string& job, const std::st
   return nlohmann::json::parse(check.out);
 }
 
+/// `run --stock` of this sample, once for all tests: its outputs and what it printed.
+struct StockRun {
+  TestDir dir;
+  std::string printed;
+
+  explicit StockRun(const std::string& job) {
+    const Finished run = run_program({"run", job, "--stock", "--out", dir / "out"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    printed = run.out;
+  }
+};
+const StockRun& spur_quick() {
+  static const StockRun run(kSamples + "/spur_quick.toml");
+  return run;
+}
+const StockRun& bevel_pinion() {
+  static const StockRun run(kSamples + "/bevel_pinion.toml");
+  return run;
+}
+
 TEST(StockFiles, OfAFaceGearAreClosedHoldTheGearAndPassTheCheck) {
-  const TestDir dir;
   const std::string job = kSamples + "/spur_quick.toml";
-  ASSERT_EQ(run_program({"run", job, "--stock", "--out", dir / "out", "--quiet"}).exit_code, 0);
+  const TestDir& dir = spur_quick().dir;
   const double gear = mesh::signed_volume(solid(dir / "out/gear.stl")),
                blank = mesh::signed_volume(solid(dir / "out/blank.stl")),
                roughed = mesh::signed_volume(solid(dir / "out/roughed.stl"));
@@ -45,11 +64,9 @@ TEST(StockFiles, OfAFaceGearAreClosedHoldTheGearAndPassTheCheck) {
 }
 
 TEST(StockFiles, OfABevelGearAreClosedAndHoldTheGear) {
-  const TestDir dir;
   const std::string job = kSamples + "/bevel_pinion.toml";
-  const Finished run = run_program({"run", job, "--stock", "--out", dir / "out"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("roughed.stl: "), std::string::npos) << run.out;
+  const TestDir& dir = bevel_pinion().dir;
+  EXPECT_NE(bevel_pinion().printed.find("roughed.stl: "), std::string::npos) << bevel_pinion().printed;
   const double gear = mesh::signed_volume(solid(dir / "out/gear.stl")),
                blank = mesh::signed_volume(solid(dir / "out/blank.stl")),
                roughed = mesh::signed_volume(solid(dir / "out/roughed.stl"));
@@ -131,10 +148,8 @@ int wrongly_missing(const mesh::TriangleMesh& mesh, const BallPath& path, int& m
   return wrong;
 }
 
-TEST(RoughedPart, IsNeverSmallerThanWhatRoughingLeaves) {
-  const TestDir dir;
-  ASSERT_EQ(run_program({"run", kSamples + "/spur_quick.toml", "--stock", "--out", dir / "out", "--quiet"}).exit_code,
-            0);
+TEST(StockFiles, RoughedPartIsNeverSmallerThanWhatRoughingLeaves) {
+  const TestDir& dir = spur_quick().dir;
   const BallPath path(file_text(dir / "out/cl.csv"));
   ASSERT_GT(path.moves.size(), 50u);
   mesh::TriangleMesh mesh = solid(dir / "out/roughed.stl");
@@ -146,7 +161,7 @@ TEST(RoughedPart, IsNeverSmallerThanWhatRoughingLeaves) {
   EXPECT_GT(wrongly_missing(mesh, path, missing), 20);
 }
 
-TEST(RoughedPart, TakesAFinishingProgramAlone) {
+TEST(StockFiles, RoughedPartTakesAFinishingProgramAlone) {
   const TestDir dir;
   const std::string job = kSamples + "/spur_quick.toml";
   ASSERT_EQ(run_program({"run", job, "--stock", "--restart", "1:0", "--out", dir / "out", "--quiet"}).exit_code, 0);
@@ -239,10 +254,8 @@ WrongPlaces ask(const mesh::TriangleMesh& mesh, const MillPath& path, double thi
   return out;
 }
 
-TEST(RoughedPart, OfABevelGearIsWhatTheMillLeaves) {
-  const TestDir dir;
-  ASSERT_EQ(run_program({"run", kSamples + "/bevel_pinion.toml", "--stock", "--out", dir / "out", "--quiet"}).exit_code,
-            0);
+TEST(StockFiles, RoughedPartOfABevelGearIsWhatTheMillLeaves) {
+  const TestDir& dir = bevel_pinion().dir;
   const MillPath path(file_text(dir / "out/cl.csv"));
   ASSERT_GT(path.moves.size(), 100u);
   const auto told = nlohmann::json::parse(file_text(dir / "out/report.json"))["roughed"];
@@ -262,7 +275,7 @@ TEST(RoughedPart, OfABevelGearIsWhatTheMillLeaves) {
   EXPECT_GT(planted.wrongly_there, 10);
 }
 
-TEST(RoughedPart, OfABevelGearTakesAFinishingProgramAndIsRefusedTurnedByHalfAPitch) {
+TEST(StockFiles, RoughedPartOfABevelGearTakesAFinishingProgramAndIsRefusedTurnedByHalfAPitch) {
   const TestDir dir;
   const std::string job = kSamples + "/bevel_pinion.toml";
   ASSERT_EQ(run_program({"run", job, "--stock", "--restart", "1:0", "--out", dir / "out", "--quiet"}).exit_code, 0);
@@ -281,27 +294,25 @@ TEST(RoughedPart, OfABevelGearTakesAFinishingProgramAndIsRefusedTurnedByHalfAPit
 }
 
 /// A shank that begins 3 mm above the tip enters the blank, where nothing is cut yet.
-TEST(BlankPart, AShankThatEntersItIsNamed) {
+TEST(StockFiles, BlankPartAShankThatEntersItIsNamed) {
   const TestDir dir;
   const std::string job = file_text(kSamples + "/spur_quick.toml");
-  ASSERT_EQ(run_program({"run", kSamples + "/spur_quick.toml", "--stock", "--out", dir / "out", "--quiet"}).exit_code,
-            0);
   write_file(dir / "short.toml", replaced_all(job, "flute_length = 6.0", "flute_length = 3.0"));
-  const auto found = checked(dir, dir / "short.toml", dir / "out/program.ngc", dir / "out/blank.stl", 1);
+  const TestDir& whole = spur_quick().dir;
+  const auto found = checked(dir, dir / "short.toml", whole / "out/program.ngc", whole / "out/blank.stl", 1);
   EXPECT_EQ(found["report"]["stock"]["clear"], false);
   EXPECT_EQ(found["report"]["stock"]["worst"][0]["body"], "shank");
 }
 
-TEST(StockOfAnotherGear, IsRefused) {
+TEST(StockFiles, OfAnotherGearAreRefused) {
   const TestDir dir;
   ASSERT_EQ(run_program({"surface", kSamples + "/offset_milled.toml", "--stock", "--out", dir / "other", "--quiet"})
                 .exit_code,
             0);
   EXPECT_FALSE(std::filesystem::exists(dir / "other/roughed.stl")) << "surface plans nothing";
   const std::string job = kSamples + "/spur_quick.toml";
-  ASSERT_EQ(run_program({"run", job, "--out", dir / "out", "--quiet"}).exit_code, 0);
-  const Finished check =
-      run_program({"check", job, dir / "out/program.ngc", "--stock", dir / "other/blank.stl", "--out", dir / "check"});
+  const Finished check = run_program(
+      {"check", job, spur_quick().dir / "out/program.ngc", "--stock", dir / "other/blank.stl", "--out", dir / "check"});
   EXPECT_EQ(check.exit_code, 3);
   EXPECT_NE(check.err.find("out of the stock"), std::string::npos) << check.err;
 }
