@@ -9,6 +9,7 @@
 #include <random>
 
 #include "app/base/units.h"
+#include "app/process/ease_off/motion.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
 
@@ -146,9 +147,7 @@ Json table_json(const MisalignmentTable& table) {
       const PairWords& words = *table.words;
       Json flank = {{words.side_key, words.numbered ? Json(s == 0 ? 1 : -1) : Json(words.sides[s])},
                     {"transmission_error",
-                     {{"mean_urad", side.error_mean_rad * app::kMicro},
-                      {"range_urad", side.error_range_rad * app::kMicro},
-                      {"range_um", side.error_range_rad * table.pitch_radius_mm * app::kUm}}},
+                     transmission_error_json(side.error_mean_rad, side.error_range_rad, table.pitch_radius_mm)},
                     {"margin_gap_um", side.margin_gap_mm < 1e100 ? Json(side.margin_gap_mm * app::kUm) : Json(nullptr)},
                     {"zones", Json::array()}};
       for (std::size_t m = 0; m < side.at_edges.size(); ++m) {

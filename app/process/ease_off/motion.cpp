@@ -7,8 +7,16 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/units.h"
+#include "geometry/base/angle.h"
 
 namespace toothpath::ease_off {
+
+nlohmann::ordered_json transmission_error_json(double mean_rad, double range_rad, double lever_mm) {
+  return {{"mean_urad", mean_rad * app::kMicro},
+          {"range_urad", range_rad * app::kMicro},
+          {"range_arcsec", degrees(range_rad) * 3600},
+          {"range_um", range_rad * lever_mm * app::kUm}};
+}
 
 nlohmann::ordered_json motion_json(const MotionCurve& curve, std::size_t stride) {
   nlohmann::ordered_json json = {{"pitches", nlohmann::ordered_json::array()},

@@ -18,6 +18,8 @@ struct MotionCurve {
   double start = 0, pitch = 1;           ///< turn at which the pitch of the roll begins; rad
 };
 
+/// Mean and range of a transmission error, as every report of a pair has them. @param lever_mm  makes lengths of angles
+[[nodiscard]] nlohmann::ordered_json transmission_error_json(double mean_rad, double range_rad, double lever_mm);
 /// In pitches from where the pair lags least. @param stride  positions to one that is told
 [[nodiscard]] nlohmann::ordered_json motion_json(const MotionCurve& curve, std::size_t stride);
 /// Each curve with those of the pairs before and behind; empty without curves.

@@ -217,10 +217,7 @@ std::string contact_json(const RolledPair& a) {
     s["side"] = side.side;
     s["contact"] = side.kind;
     const contact::RollResult& r = side.roll;
-    s["transmission_error"] = {{"mean_urad", r.error_mean_rad * app::kMicro},
-                               {"range_urad", r.error_range_rad * app::kMicro},
-                               {"range_arcsec", degrees(r.error_range_rad) * 3600},
-                               {"range_um", r.error_range_rad * a.pitch_radius_mm * app::kUm}};
+    s["transmission_error"] = ease_off::transmission_error_json(r.error_mean_rad, r.error_range_rad, a.pitch_radius_mm);
     s["contact_ratio"] = r.contact_ratio;
     s["pairs_touching"] = {r.least_touching, r.most_touching};
     s["pairs_within_compound"] = {r.least_marking, r.most_marking};
