@@ -5,22 +5,9 @@
 
 namespace toothpath::face {
 
-const ease_off::PairWords kFaceWords = {
-    "flank",
-    "side",
-    {"+1", "-1"},
-    true,
-    "ring",
-    "zone",
-    "surface,flank,zone,row,column,r,z,ease_off_um,phi_2_deg,pinion_radius,pinion_Z",
-    "r",
-    "z",
-    "r",
-    "z",
-    "radius from the gear's axis [mm]",
-    "height z [mm]",
-    "pinion's involute ends",
-    "pitch radius"};
+const ease_off::PairWords kFaceWords =
+    ease_off::flank_words("ring", {"r", "r", "radius from the gear's axis [mm]"}, {"z", "z", "height z [mm]"},
+                          "pinion's involute ends", "pitch radius");
 
 namespace {
 

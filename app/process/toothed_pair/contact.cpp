@@ -11,74 +11,20 @@
 namespace toothpath::toothed_pair {
 namespace {
 
-constexpr const char* kLever = "radius of the flank's middle";
-constexpr const char* kEnd = "the mate's flank ends";
-
-/// One set for each way in which teeth stand, by what runs along them.
-const ease_off::PairWords kWords[] = {
-    {"flank",
-     "side",
-     {"+1", "-1"},
-     true,
-     "ring",
-     "zone",
-     "surface,flank,zone,row,column,r,z,ease_off_um,phi_2_deg,pinion_radius,pinion_Z",
-     "r",
-     "z",
-     "r",
-     "z",
-     "radius from the gear's axis [mm]",
-     "height z [mm]",
-     kEnd,
-     kLever},
-    {"flank",
-     "side",
-     {"+1", "-1"},
-     true,
-     "zone",
-     "zone",
-     "surface,flank,zone,row,column,z,r,ease_off_um,phi_2_deg,pinion_radius,pinion_Z",
-     "z",
-     "r",
-     "z",
-     "r",
-     "z [mm]",
-     "radius [mm]",
-     kEnd,
-     kLever},
-    {"flank",
-     "side",
-     {"+1", "-1"},
-     true,
-     "zone",
-     "zone",
-     "surface,flank,zone,row,column,cone_distance,height,ease_off_um,phi_2_deg,pinion_radius,pinion_Z",
-     "cone_distance",
-     "height",
-     "cone distance",
-     "height",
-     "cone distance [mm]",
-     "height above the pitch cone [mm]",
-     kEnd,
-     kLever},
-    {"flank",
-     "side",
-     {"+1", "-1"},
-     true,
-     "zone",
-     "zone",
-     "surface,flank,zone,row,column,along,height,ease_off_um,phi_2_deg,pinion_radius,pinion_Z",
-     "along",
-     "height",
-     "along the teeth",
-     "height",
-     "along the teeth [mm]",
-     "height [mm]",
-     kEnd,
-     kLever}};
+/// By what runs along the teeth.
 const ease_off::PairWords& words_of(const tooth_space::Outline& ring) {
+  const auto words = [](const char* part, const ease_off::CoordinateWords& x, const ease_off::CoordinateWords& y) {
+    return ease_off::flank_words(part, x, y, "the mate's flank ends", "radius of the flank's middle");
+  };
+  static const ease_off::PairWords kAcross = words("ring", {"r", "r", "radius from the gear's axis [mm]"},
+                                                   {"z", "z", "height z [mm]"}),
+                                   kUp = words("zone", {"z", "z", "z [mm]"}, {"r", "r", "radius [mm]"}),
+                                   kCone = words("zone", {"cone_distance", "cone distance", "cone distance [mm]"},
+                                                 {"height", "height", "height above the pitch cone [mm]"}),
+                                   kAlong = words("zone", {"along", "along the teeth", "along the teeth [mm]"},
+                                                  {"height", "height", "height [mm]"});
   const std::string_view along = ring.along;
-  return kWords[along == "radius" ? 0 : along == "z" ? 1 : along == "cone distance" ? 2 : 3];
+  return along == "radius" ? kAcross : along == "z" ? kUp : along == "cone distance" ? kCone : kAlong;
 }
 
 /// Both gears in their roles.
