@@ -13,8 +13,8 @@
 #include <regex>
 #include <sstream>
 
-#include "app/commands/check.h"
 #include "app/job/file.h"
+#include "tests/app/checker.h"
 #include "tests/app/judged.h"
 #include "tests/support/brute_force_face_gear.h"
 
@@ -125,14 +125,7 @@ class PlantedProgram {
   };
   /// What `check` says of a text; the job is read once for all of them.
   [[nodiscard]] Found check(const Lines& lines) const {
-    if (!checker_) {
-      commands::CheckRequest request;
-      request.job_file = dir_ / "job.toml";
-      request.quiet = true;
-      checker_ = std::make_unique<commands::ProgramChecker>(request);
-      const auto errors = checker_->read();
-      EXPECT_TRUE(errors.empty()) << to_text(errors);
-    }
+    if (!checker_) checker_ = checker_of(dir_ / "job.toml");
     const auto report = checker_->prove(joined(lines), dir_ / "edited.nc");
     return report ? found_in(report::report_json(*report)) : Found{"refused", to_text({report.error()}), 0};
   }

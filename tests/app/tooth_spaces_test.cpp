@@ -9,8 +9,8 @@
 #include <regex>
 #include <sstream>
 
-#include "app/commands/check.h"
 #include "app/commands/run.h"
+#include "tests/app/checker.h"
 #include "tests/app/judged.h"
 #include "tests/support/files.h"
 #include "tests/support/threads.h"
@@ -43,14 +43,7 @@ class Made {
   [[nodiscard]] const Lines& lines() const { return lines_; }
   /// What `check` says of a text; the job is read and planned once for all of them.
   [[nodiscard]] Verdict check(const Lines& lines) const {
-    if (!checker_) {
-      commands::CheckRequest request;
-      request.job_file = dir_ / "job.toml";
-      request.quiet = true;
-      checker_ = std::make_unique<commands::ProgramChecker>(request);
-      const auto errors = checker_->read();
-      EXPECT_TRUE(errors.empty()) << to_text(errors);
-    }
+    if (!checker_) checker_ = checker_of(dir_ / "job.toml");
     std::string text;
     for (const std::string& line : lines) text += line + "\n";
     const auto proven = checker_->prove(text, dir_ / "edited.ngc");
