@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 
 #include "cam/cut/measured_places.h"
@@ -11,6 +12,7 @@
 #include "cam/cut/swept_tool.h"
 #include "cam/cut/unreached.h"
 #include "cam/proof/limits.h"
+#include "geometry/base/golden_section.h"
 #include "geometry/base/work_share.h"
 
 namespace toothpath::cut {
@@ -192,25 +194,10 @@ class Meter {
   /// beside it lies up to 7 % of the cusp lower.
   [[nodiscard]] std::pair<double, double> crest(const ZonePlaces& places, double r, const LinePoint& before,
                                                 const LinePoint& after) const {
-    constexpr double kGolden = 0.6180339887498949;
-    double a = before.sigma, b = after.sigma;
-    double x = b - kGolden * (b - a), y = a + kGolden * (b - a), f = left_at(places, x, r), g = left_at(places, y, r);
-    for (int k = 0; k < kCrestSteps; ++k) {
-      if (f > g) {
-        b = y;
-        y = x;
-        g = f;
-        x = b - kGolden * (b - a);
-        f = left_at(places, x, r);
-      } else {
-        a = x;
-        x = y;
-        f = g;
-        y = a + kGolden * (b - a);
-        g = left_at(places, y, r);
-      }
-    }
-    return f > g ? std::pair{x, f} : std::pair{y, g};
+    auto search = golden_section<std::greater<>>(before.sigma, after.sigma,
+                                                 [&](double sigma) { return left_at(places, sigma, r); });
+    for (int k = 0; k < kCrestSteps; ++k) search.step();
+    return search.best();
   }
 
   /// Excess above which a place that the ball does not reach was left; no place is where the last operation does not

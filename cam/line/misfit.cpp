@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "cam/cut/swept_tool.h"
+#include "geometry/base/golden_section.h"
 
 namespace toothpath::line {
 namespace {
@@ -70,18 +72,12 @@ double largest_of(std::size_t pieces, const F& f) {
   std::vector<double> at(pieces + 1, 0.0);
   tbb::parallel_for(std::size_t{0}, at.size(), [&](std::size_t k) { at[k] = f(double(k)); });
   const auto top = std::max_element(at.begin(), at.end());
-  double found = *top, a = std::max(double(top - at.begin()) - 1, 0.0), b = std::min(a + 2, double(pieces));
-  const double golden = 0.5 * (std::sqrt(5.0) - 1);
-  double p = b - golden * (b - a), q = a + golden * (b - a), fp = f(p), fq = f(q);
+  const double from = std::max(double(top - at.begin()) - 1, 0.0);
+  auto search = golden_section<std::greater<>>(from, std::min(from + 2, double(pieces)), f);
+  double found = std::max(*top, search.best().second);
   for (int k = 0; k < kSections; ++k) {
-    found = std::max({found, fp, fq});
-    if (fp > fq) {
-      b = q, q = p, fq = fp;
-      p = b - golden * (b - a), fp = f(p);
-    } else {
-      a = p, p = q, fp = fq;
-      q = a + golden * (b - a), fq = f(q);
-    }
+    search.step();
+    found = std::max(found, search.best().second);
   }
   return found;
 }

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "cam/line/smooth.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/golden_section.h"
 #include "geometry/base/work_share.h"
 
 namespace toothpath::line {
@@ -194,19 +196,10 @@ class PassPlanner {
       });
       return *std::max_element(misfit.begin(), misfit.end());
     };
-    const double golden = 0.5 * (std::sqrt(5.0) - 1);
-    double a = *std::min_element(angle.begin(), angle.end()), b = *std::max_element(angle.begin(), angle.end());
-    double p = b - golden * (b - a), q = a + golden * (b - a), fp = worst(p), fq = worst(q);
-    while (b - a > radians(0.01)) {
-      if (fp <= fq) {
-        b = q, q = p, fq = fp;
-        p = b - golden * (b - a), fp = worst(p);
-      } else {
-        a = p, p = q, fp = fq;
-        q = a + golden * (b - a), fq = worst(q);
-      }
-    }
-    return condition(0.5 * (a + b));
+    const auto [from, to] = std::minmax_element(angle.begin(), angle.end());
+    auto search = golden_section<std::less_equal<>>(*from, *to, worst);
+    while (search.width() > radians(0.01)) search.step();
+    return condition(search.middle());
   }
 
   /// How psi(s) and eps(s) are made from the best poses.

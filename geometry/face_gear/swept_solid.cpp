@@ -1,9 +1,11 @@
 #include "geometry/face_gear/swept_solid.h"
 
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/golden_section.h"
 
 namespace toothpath::face_gear {
 namespace {
@@ -45,20 +47,11 @@ class ShaperPassing {
 
 /// Least value between a and b, where one minimum is expected; no smoothness needed.
 double golden_minimum(const ShaperPassing& distance, double a, double b) {
-  const double golden = (std::sqrt(5.0) - 1) / 2;
-  double p = b - golden * (b - a), q = a + golden * (b - a), fp = distance(p), fq = distance(q),
-         least = std::min(fp, fq);
+  auto search = golden_section<std::less_equal<>>(a, b, std::cref(distance));
+  double least = search.best().second;
   for (int k = 0; k < kGoldenSteps; ++k) {
-    if (fp <= fq) {
-      b = q, q = p, fq = fp;
-      p = b - golden * (b - a);
-      fp = distance(p);
-    } else {
-      a = p, p = q, fp = fq;
-      q = a + golden * (b - a);
-      fq = distance(q);
-    }
-    least = std::min({least, fp, fq});
+    search.step();
+    least = std::min(least, search.best().second);
   }
   return least;
 }
