@@ -11,11 +11,16 @@ std::optional<double> BevelPart::groove_floor() const {
   return zones() < 2 ? std::nullopt : std::optional(lowest_root());
 }
 
-bool BevelPart::in_blank(const Vec3& p) const {
-  const double ell = -chart().along(p), h = chart().up(p);
-  if (ell < gear_.R_i() || ell > gear_.R_e() || h > blank_top()) return false;
-  return zones() < 2 || ell <= gear_.halves()[0].ell_to || ell >= gear_.halves()[1].ell_from || h <= lowest_root();
+bool in_blank(const BevelGear& gear, const Vec3& p) {
+  const tooth_space::Chart chart{-gear.sin_delta(), gear.cos_delta()};
+  const double ell = -chart.along(p), h = chart.up(p);
+  if (ell < gear.R_i() || ell > gear.R_e() || h > gear.parameters().addendum_mm) return false;
+  const auto& halves = gear.halves();
+  return halves.size() < 2 || ell <= halves[0].ell_to || ell >= halves[1].ell_from ||
+         h <= -gear.parameters().dedendum_mm;
 }
+
+bool BevelPart::in_blank(const Vec3& p) const { return bevel_gear::in_blank(gear_, p); }
 
 std::optional<Refusal> BevelPart::refusal(int zone) const {
   const double turn = space(zone).kernel().least_turn();

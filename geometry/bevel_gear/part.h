@@ -14,7 +14,10 @@ namespace toothpath::bevel_gear {
 
 using WallSpace = tooth_space::KernelSpace<WallKernel>;
 
-/// The blank is turned: face cone, the groove of a herringbone down to the root, ends square to the pitch cone.
+/// Is the place in the blank? It is turned: face cone, the groove of a herringbone down to the root, ends square to the
+/// pitch cone.
+[[nodiscard]] bool in_blank(const BevelGear& gear, const Vec3& p);
+
 class BevelPart final : public tooth_space::ToothedPart {
  public:
   explicit BevelPart(BevelGear gear);

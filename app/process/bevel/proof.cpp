@@ -12,6 +12,7 @@
 #include "cam/finger/milling.h"
 #include "cam/finger/teeth.h"
 #include "geometry/base/angle.h"
+#include "geometry/bevel_gear/part.h"
 
 namespace toothpath::bevel {
 namespace {
@@ -25,16 +26,6 @@ constexpr double kRoundedLinear =
 constexpr double kAlongAxis = 0.05;  // a move with less across the axis, as a share, is an engage or retract
 
 constexpr double kLoadSag = 0.05;  // mm: the mill as a load asks for it
-
-/// The turned blank: two halves, a groove between them.
-bool in_blank(const bevel_gear::BevelGear& gear, const Vec3& p) {
-  const auto at = bevel_gear::cone_point(p, gear.sin_delta(), gear.cos_delta());
-  if (at.height > gear.parameters().addendum_mm || at.ell < gear.R_i() || at.ell > gear.R_e()) return false;
-  return at.height < -gear.parameters().dedendum_mm ||
-         std::any_of(gear.halves().begin(), gear.halves().end(), [&](const bevel_gear::BevelHalf& half) {
-           return at.ell >= half.ell_from && at.ell <= half.ell_to;
-         });
-}
 
 std::string told(const proof::WorstPlace& p) {
   return fmt::format("{} against {}, operation {}, tooth {}, line {}, r {:.3f} mm, z {:.3f} mm", p.body, p.patch,
@@ -221,7 +212,7 @@ bool BevelGearCheck::measures(int operation) const { return finisher(job_) == st
 /// No job asks for the stock that the walls keep: a plan tells it.
 process::LoadJudge BevelGearCheck::load_judge() const {
   process::LoadQuery query{.job = job_,
-                           .in_blank = [this](const Vec3& p) { return in_blank(gear_, p); },
+                           .in_blank = [this](const Vec3& p) { return bevel_gear::in_blank(gear_, p); },
                            .top_mm = INFINITY,
                            .chart = {-gear_.sin_delta(), gear_.cos_delta()}};
   for (const path::MillingOperation& op : job_.operations) {
