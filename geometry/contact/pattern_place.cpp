@@ -21,7 +21,7 @@ const char* to_string(Edge edge) {
     case Edge::tip: return "tip";
     case Edge::fillet_line: return "fillet line";
     case Edge::pinion_tip: return "pinion tip";
-    case Edge::pinion_root: return "end of the pinion's involute";
+    case Edge::pinion_root: return "end of the pinion's flank";
   }
   return "";
 }

@@ -14,7 +14,7 @@ namespace {
 /// By what runs along the teeth.
 const ease_off::PairWords& words_of(const tooth_space::Outline& ring) {
   const auto words = [](const char* part, const ease_off::CoordinateWords& x, const ease_off::CoordinateWords& y) {
-    return ease_off::flank_words(part, x, y, "the mate's flank ends", "radius of the flank's middle");
+    return ease_off::flank_words(part, x, y, "mate's flank ends", "radius of the flank's middle");
   };
   static const ease_off::PairWords kAcross = words("ring", {"r", "r", "radius from the gear's axis [mm]"},
                                                    {"z", "z", "height z [mm]"}),
