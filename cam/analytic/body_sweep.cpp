@@ -50,6 +50,7 @@ constexpr int kShareSteps = 3;        // rounds over the directions of a cell
 constexpr double kFlat = 0.02;        // share of the first slope at which a way ends
 constexpr double kTimeMatters = 0.1;  // of the contact's proof
 constexpr double kLongWay = 4;        // sizes of a quad that it may pass by undivided
+constexpr double kLeastTurn = 1e-8;   // rad: the normal of a smaller turn is rounding, and any frame turns with it
 
 using Target = NearCells::Found::Target;
 using NearCell = NearCells::Found::Cell;
@@ -80,7 +81,7 @@ class Course {
   explicit Course(const path::ToolMotion& motion) : m_(motion) {
     const Vec3 cross = m_.axis_from.cross(m_.axis_to);
     turns_ = m_.axis_from != m_.axis_to;
-    normal_ = cross.norm() > 0 ? Vec3(cross.normalized()) : Vec3(m_.axis_from.unitOrthogonal());
+    normal_ = cross.norm() > kLeastTurn ? Vec3(cross.normalized()) : Vec3(m_.axis_from.unitOrthogonal());
     side_ = m_.axis_from.cross(normal_);
     travel_ = (m_.tip_to - m_.tip_from).norm();
     const double half = std::min(0.5 * (m_.axis_to - m_.axis_from).norm(), 0.9999);
@@ -88,8 +89,8 @@ class Course {
   }
   [[nodiscard]] View view(double t) const {
     if (!turns_) return {path::tip_at(m_, t), normal_, side_, m_.axis_from};
-    const Vec3 a = path::axis_at(m_, t);
-    return {path::tip_at(m_, t), normal_, a.cross(normal_), a};
+    const Vec3 a = path::axis_at(m_, t), across = (normal_ - a * a.dot(normal_)).normalized();
+    return {path::tip_at(m_, t), across, a.cross(across), a};
   }
   /// What a place at distance `arm` from the tip may leave of the straight line between its two places, seen from the
   /// tool.

@@ -269,6 +269,33 @@ TEST(Involute, EndsAreBoundAsCloselyAsFlanks) {
   EXPECT_LE(worst, kProof);
 }
 
+// Axes that differ in their last digits alone do not turn the frame in which the tool sees the gear: the gap stays what
+// it is.
+TEST(Involute, ATurnOfRoundingIsNone) {
+  constexpr double kGap = 3e-4, kRadius = 1.25;
+  const std::shared_ptr<const ToothedPart> part = involute_cases().front().part;
+  const analytic::GearDistance distance(part, 4);
+  Random random(41);
+  for (const int side : {1, -1}) {
+    const auto f = *line::flank_task(*part, 0, side);
+    for (int k = 0; k < 20; ++k) {
+      const auto on = f.at_depth(0.5 * (f.s_from + f.s_to), 0.05 * f.depth)->on;
+      path::ToolMotion m;
+      m.tip_from = on.p + (kRadius + kGap) * on.n;
+      m.tip_to = m.tip_from - Vec3(0, 0, 0.3);
+      m.axis_from = m.axis_to = (f.up(on.p) + Vec3(0, 0, random(-0.3, 0.3))).normalized();
+      for (int n = 0; n < 3; ++n) m.axis_to[n] += 3e-16 * random(-1, 1);
+      analytic::SweptGapOptions o;
+      o.touching = true;
+      o.enough_mm = o.contact_mm = 0.01;
+      const auto gap =
+          analytic::swept_gap(distance, tool::RoundedFrustum{{0, 8, 0, 0, tool::Body::flute}, kRadius}, m, o);
+      EXPECT_NEAR(gap.measured_mm, kGap, 1e-5) << k;
+      EXPECT_GT(gap.proven_mm, kGap - 2 * o.contact_proof_mm) << k;
+    }
+  }
+}
+
 // From flank to flank over a gear that is long and thin: a straight way between two places above its blank would pass
 // through it.
 TEST(Involute, RapidsGoRoundTheBlank) {
