@@ -149,8 +149,7 @@ Result<SpaceFlank> measured_flank(const SpaceFlank& exact, int rows, int columns
 }
 
 MatePlace outside_place(const OutsideShafts& shafts, const Misalignment& moved) {
-  const bool parallel = shafts.angle_rad == 0;
-  const Vec3 across = parallel ? Vec3::UnitX() : Vec3::UnitY();
+  const Vec3 across = shafts.angle_rad == 0 || shafts.skew ? Vec3::UnitX() : Vec3::UnitY();
   MatePlace out;
   // Half a turn about its own axis brings azimuth 0 of the mate to azimuth 0 of the gear.
   out.axes = Eigen::AngleAxisd(shafts.angle_rad + moved.angle_rad, across).toRotationMatrix() *

@@ -71,6 +71,7 @@ struct MatePlace {
 struct OutsideShafts {
   double angle_rad = 0;                         ///< between both z; 0: parallel
   double distance_mm = 0;                       ///< of the axes, along x where they are parallel, else along y
+  bool skew = false;                            ///< of cylindrical gears: turned about the line of centres, x
   double gear_axial_mm = 0, mate_axial_mm = 0;  ///< each along its own z
 };
 /// `moved`: the distance of the axes, their angle about the common perpendicular, both gears along their own z.

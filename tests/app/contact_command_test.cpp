@@ -230,7 +230,7 @@ TEST(ContactCommand, TwoJobsThatDoNotRoll) {
       {3, {spur, "--mate", spur, "--torque", "100"}, "there is no elastic model of such pairs"},
       {3, {spur, "--mate", spur, "--optimise"}, "--optimise knows face gears"},
       {3, {spur, "--mate", spur, "--pinion-teeth", "20"}, "--pinion-teeth contradicts the mate"},
-      {3, {spur, "--mate", spur, "--shaft-angle", "10"}, "rolled on parallel shafts alone"},
+      {3, {spur, "--mate", spur, "--shaft-angle", "10"}, "on shafts at 0 deg, not 10"},
       {3, {spur, "--mate", spur, "--axis-distance", "200"}, "come to each other in no turn"},
       {3, {spur, "--mate", cone}, "does not run with a"},
       {3, {spiral, "--mate", cone}, "do not roll on each other with"},

@@ -160,7 +160,7 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const JobGear& job, cons
   a.settings = under_load::contact_settings(job.job, asked);
   a.settings.pinion_teeth = a.pinion_teeth = roles.pinion.part->teeth();
   a.gear_teeth = roles.gear.part->teeth();
-  a.shaft_angle_rad = shafts.angle_rad, a.distance_mm = shafts.distance_mm;
+  a.shaft_angle_rad = std::abs(shafts.angle_rad), a.distance_mm = shafts.distance_mm;
   Asked rolls;
   rolls.pair = {roles.gear.part.get(), roles.pinion.part.get(),
                 shafts.place(shafts, roles.gear, roles.pinion, a.settings.moved)};

@@ -12,11 +12,14 @@ using Refused = std::vector<Diagnostic>;
 
 /// Share of a pitch cone, or of a base pitch, by which two gears may differ and still mesh.
 constexpr double kFits = 1e-3;
+/// How far shafts may stand beside the angle at which the teeth of both lie along each other.
+constexpr double kBesideParallel = radians(1), kBesideSkew = radians(5);
 
 contact::MatePlace outside(const Shafts& shafts, const JobGear&, const JobGear&, const contact::Misalignment& moved) {
   contact::OutsideShafts at;
   at.angle_rad = shafts.angle_rad;
   at.distance_mm = shafts.distance_mm;
+  at.skew = shafts.skew;
   return contact::outside_place(at, moved);
 }
 contact::MatePlace on_face_gear(const Shafts&, const JobGear& gear, const JobGear& pinion,
@@ -40,12 +43,13 @@ std::optional<Cone> cone_of(const job::Job& job) {
 /// Transverse, on the reference cylinder.
 struct Rolling {
   double radius_mm = 0, base_mm = 0, shift_mm = 0, helix_rad = 0;
+  double base_helix_rad = 0;
 };
 Rolling rolling_of(const cylindrical::CylindricalParameters& p) {
   const double beta = p.zones.front().helix_angle_rad,
                wide = p.module_plane == ModulePlane::normal ? 1 / std::cos(beta) : 1;
   const double r = 0.5 * p.module_mm * wide * p.teeth, alpha = std::atan(std::tan(p.pressure_angle_rad) * wide);
-  return {r, r * std::cos(alpha), p.profile_shift * p.module_mm, beta};
+  return {r, r * std::cos(alpha), p.profile_shift * p.module_mm, beta, std::atan(std::tan(beta) * std::cos(alpha))};
 }
 
 /// The distance at which thicknesses and spaces of the drawings, without allowances, leave no backlash.
@@ -63,28 +67,44 @@ std::optional<double> distance_without_backlash(const Rolling& a, const Rolling&
   return (a.base_mm + b.base_mm) / std::cos(working);
 }
 
-process::ValueOrErrors<Shafts> parallel(const JobGear& gear, const JobGear& pinion, const process::ContactAsked& asked,
-                                        Shafts out) {
-  const Rolling a = rolling_of(*gear.job.cylindrical_gear()), b = rolling_of(*pinion.job.cylindrical_gear());
-  if (asked.shaft_angle_deg.value_or(0) != 0)
-    return Refused{fail_at(gear.job.where("gear.type"),
-                           "--shaft-angle {:g}: two cylindrical gears are rolled on parallel shafts alone",
+process::ValueOrErrors<Shafts> cylinders(const JobGear& gear, const JobGear& pinion, const process::ContactAsked& asked,
+                                         Shafts out) {
+  const auto &g = *gear.job.cylindrical_gear(), &p = *pinion.job.cylindrical_gear();
+  const Rolling a = rolling_of(g), b = rolling_of(p);
+  const double asked_rad = radians(std::abs(asked.shaft_angle_deg.value_or(0))), along = a.helix_rad + b.helix_rad;
+  out.skew = asked_rad != 0;
+  if (out.skew && (g.zones.size() > 1 || p.zones.size() > 1))
+    return Refused{fail_at((g.zones.size() > 1 ? gear : pinion).job.where("gear.zone"),
+                           "--shaft-angle {:g}: teeth of two helix angles lie along those of a mate on parallel shafts "
+                           "alone",
                            *asked.shaft_angle_deg)};
-  const double pitch_a = a.base_mm / gear.part->teeth(), pitch_b = b.base_mm / pinion.part->teeth();
+  // On parallel shafts both helices have one lead a base pitch; on crossed ones normal base pitches do it.
+  const auto base_pitch = [&](const Rolling& r, const JobGear& of) {
+    return kTwoPi * r.base_mm / of.part->teeth() * (out.skew ? std::cos(r.base_helix_rad) : 1);
+  };
+  const double pitch_a = base_pitch(a, gear), pitch_b = base_pitch(b, pinion);
   if (std::abs(pitch_a - pitch_b) > kFits * pitch_a)
-    return Refused{fail_at(pinion.job.where("gear.module"),
-                           "the base pitch, {:.5f} mm, is not that of the mate, {:.5f} mm: module, pressure angle and "
-                           "helix angle of both must agree",
-                           kTwoPi * pitch_b, kTwoPi * pitch_a)};
-  if (std::abs(a.helix_rad + b.helix_rad) > radians(1))
+    return Refused{
+        fail_at(pinion.job.where("gear.module"),
+                "the {}base pitch, {:.5f} mm, is not that of the mate, {:.5f} mm: {} of both must agree",
+                out.skew ? "normal " : "", pitch_b, pitch_a,
+                out.skew ? "normal module and normal pressure angle" : "module, pressure angle and helix angle")};
+  if (std::abs(std::abs(along) - asked_rad) > (out.skew ? kBesideSkew : kBesideParallel))
     return Refused{fail_at(pinion.job.where("gear.zone[0].helix_angle"),
-                           "helix_angle = {:g} deg and {:g} deg of the mate: on parallel shafts one is minus the other",
-                           degrees(b.helix_rad), degrees(a.helix_rad))};
-  const auto found = asked.axis_distance_mm ? asked.axis_distance_mm : distance_without_backlash(a, b);
+                           "helix_angle = {:g} deg and {:g} deg of the mate: the teeth lie along each other on shafts "
+                           "at {:g} deg, not {:g}; --shaft-angle DEG says at which these stand",
+                           degrees(b.helix_rad), degrees(a.helix_rad), degrees(std::abs(along)), degrees(asked_rad))};
+  if (out.skew) out.angle_rad = along > 0 ? -asked_rad : asked_rad;
+  const bool plain = std::abs(a.shift_mm + b.shift_mm) < 1e-9;
+  const auto found = asked.axis_distance_mm ? asked.axis_distance_mm
+                     : !out.skew            ? distance_without_backlash(a, b)
+                     : plain                ? std::optional(a.radius_mm + b.radius_mm)
+                                            : std::nullopt;
   if (!found)
-    return Refused{fail_at(pinion.job.where("gear.profile_shift"),
-                           "these profile shifts leave no distance without backlash: --axis-distance MM says where the "
-                           "shafts stand")};
+    return Refused{fail_at(pinion.job.where("gear.profile_shift"), "{}: --axis-distance MM says where the shafts stand",
+                           out.skew ? "the profile shifts of both are no plus and minus, and the distance of crossed "
+                                      "shafts is not found then"
+                                    : "these profile shifts leave no distance without backlash")};
   out.distance_mm = *found;
   return out;
 }
@@ -139,7 +159,7 @@ process::ValueOrErrors<Shafts> shafts_of(const JobGear& job, const JobGear& mate
     return out;
   }
   out.place = outside;
-  if (cylinder && gear.job.cylindrical_gear() != nullptr) return parallel(gear, pinion, asked, out);
+  if (cylinder && gear.job.cylindrical_gear() != nullptr) return cylinders(gear, pinion, asked, out);
   if (a && b) return crossing(gear, pinion, *a, *b, asked, out);
   const JobGear& other = cylinder ? gear : pinion;
   if (const auto grid = cone_of(other.job); !grid || grid->pitch_angle_rad)

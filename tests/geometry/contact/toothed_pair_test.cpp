@@ -100,6 +100,26 @@ TEST(ToothedPair, InvoluteGearsAtAnyDistance) {
   }
 }
 
+/// Shafts that are neither parallel nor cross: teeth touch in a point that runs along a line, at any distance and
+/// beside the angle at which they lie along each other.
+TEST(ToothedPair, InvoluteGearsOnCrossedShafts) {
+  for (const auto& [gear_helix, mate_helix] : {std::pair(30.0, 15.0), {-20.0, -25.0}}) {
+    const Part gear = cylindrical::part_of(made(helical(37, gear_helix, 0))),
+               pinion = cylindrical::part_of(made(helical(24, mate_helix, 0)));
+    const double touching = 1.5 * (37 / std::cos(radians(gear_helix)) + 24 / std::cos(radians(mate_helix)));
+    for (const double more : {0.1, 0.5})
+      for (const double beside : {0.0, 0.5}) {
+        contact::OutsideShafts shafts;
+        shafts.angle_rad = radians(-(gear_helix + mate_helix) + beside);
+        shafts.distance_mm = touching + more, shafts.skew = true;
+        const RollResult r = rolled(gear, pinion, contact::outside_place(shafts), beside == 0 ? 1 : -1);
+        EXPECT_LT(r.error_range_rad, kRounding) << gear_helix << " " << more << " " << beside;
+        EXPECT_GT(r.contact_ratio, 1.2);
+        EXPECT_TRUE(beside != 0 || !(r.patterns[0].at_inner_end || r.patterns[0].at_outer_end)) << gear_helix;
+      }
+  }
+}
+
 TEST(ToothedPair, StraightBevelGearsAtTheirApex) {
   for (const Form form : {Form::octoid, Form::spherical_involute})
     EXPECT_LT(rolled(straight(40, form), straight(20, form), square_shafts(), 1).error_range_rad, kRounding);
