@@ -67,6 +67,11 @@ struct MatePlace {
   [[nodiscard]] Vec3 to_mate(const Vec3& p) const { return axes.transpose() * (p - origin); }
 };
 
+/// The frame of the gear in that of its mate.
+[[nodiscard]] inline MatePlace seen_from_mate(const MatePlace& place) {
+  return {place.axes.transpose(), -(place.axes.transpose() * place.origin), place.sense};
+}
+
 /// Gears that mesh from outside, cylindrical and bevel gears alike: mates stand at azimuth 0 of each other.
 struct OutsideShafts {
   double angle_rad = 0;                         ///< between both z; 0: parallel

@@ -21,7 +21,7 @@ std::string pattern_note(const RolledPair& a, const RolledSide& side, const cont
   if (p.marked_share > 0 && p.marked_share < 0.95 && p.length_mm >= 1.3 * p.width_mm)
     note += fmt::format("Long axis {:.1f} mm, inclined {:.1f} deg to the direction of the tooth; {:.1f} mm across. ",
                         p.length_mm, degrees(p.inclination_rad), p.width_mm);
-  if (side.kind == "line") note += fmt::format("Lines of contact, {} a pitch of the pinion. ", kLinesAPitch);
+  if (side.kind == "line") note += fmt::format("Lines of contact, {} a pitch of the {}. ", kLinesAPitch, a.other);
   if (side.kind == "edge") note += "The path of contact misses the flank: it bears on an edge. ";
   return note;
 }
@@ -53,7 +53,7 @@ svg::PatternDrawing drawing(const RolledPair& a, const RolledFlank& f, const con
       d.gap_um.push_back(p.gap_mm[k] * app::kUm);
     }
   }
-  d.x_label = on_pinion ? "along the pinion's axis [mm]" : a.words->x_label;
+  d.x_label = on_pinion ? fmt::format("along the {}'s axis [mm]", a.other) : a.words->x_label;
   d.y_label = on_pinion ? "radius [mm]" : a.words->y_label;
   if (on_pinion) return d;
   if (!f.turn_rad.empty()) add_lines(a, f, stride, d);
@@ -76,11 +76,13 @@ std::vector<ContactFigure> contact_patterns(const RolledPair& a) {
       const contact::FlankPattern& p = side.roll.patterns[m];
       for (const bool on_pinion : {false, true}) {
         svg::PatternDrawing d = drawing(a, side.flanks[m], p, on_pinion);
-        d.title = fmt::format("contact pattern on the {}, {}{}", on_pinion ? "pinion" : "gear", name_of(a, side), zone);
+        d.title =
+            fmt::format("contact pattern on the {}, {}{}", on_pinion ? a.other : a.carrier, name_of(a, side), zone);
         figures.push_back(
-            {fmt::format("{}: {}{}", on_pinion ? "Pinion" : "Gear", name_of(a, side), zone),
+            {fmt::format("{}: {}{}", svg::sentence(on_pinion ? a.other : a.carrier), name_of(a, side), zone),
              svg::svg_contact_pattern(d),
-             on_pinion ? "The places of the gear's grid at the moment of their least gap, on the pinion's flank."
+             on_pinion ? fmt::format("The places of the {}'s grid at the moment of their least gap, on the {}'s flank.",
+                                     a.carrier, a.other)
                        : pattern_note(a, side, p)});
       }
     }
@@ -102,9 +104,10 @@ svg::LineChart motion_chart(const RolledPair& a) {
 std::vector<svg::LineChart> contact_charts(const RolledPair& a) {
   svg::LineChart error, pairs;
   error.title = "Transmission error over one pitch";
-  error.x_label = "gear turn [pitches]";
+  error.x_label = a.carrier + " turn [pitches]";
   error.y_label = "error less its mean [\u00b5rad]";
-  error.note = "The gear's turn beyond that of the gear ratio, phi_2 - phi_1 N_p/N_2. Rigid bodies, no load.";
+  error.note = fmt::format("The {}'s turn beyond that of the gear ratio, phi_2 - phi_1 N_1/N_2. Rigid bodies, no load.",
+                           a.carrier);
   if (a.involute_pinion && !is_modified(a))
     error.note += " On the exact flank the error is a constant wherever contact is inside the flank, also misaligned.";
   pairs.title = "Pairs in contact over one pitch";
@@ -169,8 +172,8 @@ page::PageTable contact_table(const RolledPair& a) {
 std::string contact_page(const RolledPair& a, const std::string& about) {
   page::StudyPage page;
   page.title = a.job_name + ": contact";
-  page.subtitle = fmt::format("pinion of {} teeth, gear of {} teeth, compound {:g} um", a.pinion_teeth, a.gear_teeth,
-                              a.settings.compound_mm * app::kUm);
+  page.subtitle = fmt::format("{} of {} teeth, {} of {} teeth, compound {:g} um", a.other, a.pinion_teeth, a.carrier,
+                              a.gear_teeth, a.settings.compound_mm * app::kUm);
   if (!a.mate.empty()) page.subtitle += "; mate: " + a.mate;
   const contact::Misalignment& moved = a.settings.moved;
   if (!moved.none()) page.subtitle += "; " + words_of(moved);
@@ -210,9 +213,9 @@ process::NamedFiles contact_files(const RolledPair& a, const std::string& about)
 }
 
 std::string contact_section_body(const RolledPair& a) {
-  std::string out = fmt::format(
-      "<p>Rolled with a pinion of {} teeth as rigid bodies without load, marking compound of {:g} um.</p>\n",
-      a.pinion_teeth, a.settings.compound_mm * app::kUm);
+  std::string out =
+      fmt::format("<p>Rolled with a {} of {} teeth as rigid bodies without load, marking compound of {:g} um.</p>\n",
+                  a.other, a.pinion_teeth, a.settings.compound_mm * app::kUm);
   for (const auto& note : a.notes) out += "<p class=\"note\">" + svg::html_escape(note) + "</p>\n";
   std::vector<page::PageTable> tables = {contact_table(a)};
   std::vector<svg::LineChart> charts = contact_charts(a);

@@ -13,23 +13,28 @@ namespace {
 
 constexpr std::size_t kMotionStride = 4;  // positions of the roll to one of contact.json
 
-/// Edges of gear and pinion that a pattern reaches.
-std::vector<std::string> edges_reached(const contact::FlankPattern& p, const contact::PatternPlace* place,
-                                       double compound_mm) {
-  const auto at_pinion = [&](contact::Edge edge) { return place != nullptr && place->reaches(edge, compound_mm); };
+/// Edges of gear and pinion that the pattern of a flank reaches.
+std::vector<std::string> edges_reached(const RolledPair& a, const RolledSide& side, std::size_t m) {
+  const contact::FlankPattern& p = side.roll.patterns[m];
+  const auto at_other = [&](contact::Edge edge) {
+    return m < side.places.size() && side.places[m].reaches(edge, a.settings.compound_mm);
+  };
+  const std::vector<std::pair<bool, std::string>> all = {
+      {p.at_inner_end, to_string(contact::Edge::inner_end)},
+      {p.at_outer_end, to_string(contact::Edge::outer_end)},
+      {p.at_tip, to_string(contact::Edge::tip)},
+      {p.at_fillet, to_string(contact::Edge::fillet_line)},
+      {at_other(contact::Edge::pinion_tip), a.other + " tip"},
+      {at_other(contact::Edge::pinion_root), "end of the " + a.other + "'s flank"}};
   std::vector<std::string> edges;
-  for (const auto& [there, edge] : {std::pair(p.at_inner_end, contact::Edge::inner_end),
-                                    {p.at_outer_end, contact::Edge::outer_end},
-                                    {p.at_tip, contact::Edge::tip},
-                                    {p.at_fillet, contact::Edge::fillet_line},
-                                    {at_pinion(contact::Edge::pinion_tip), contact::Edge::pinion_tip},
-                                    {at_pinion(contact::Edge::pinion_root), contact::Edge::pinion_root}})
-    if (there) edges.emplace_back(to_string(edge));
+  for (const auto& [reached, name] : all)
+    if (reached) edges.push_back(name);
   return edges;
 }
 
 /// The pattern in words, as on a rolling tester: along the tooth or across it, how inclined, where it runs out.
-std::string words_of(const contact::FlankPattern& p, const contact::PatternPlace* place, double compound_mm) {
+std::string words_of(const RolledPair& a, const RolledSide& side, std::size_t m) {
+  const contact::FlankPattern& p = side.roll.patterns[m];
   if (!(p.marked_share > 0)) return "no mark";
   const double inclination = degrees(p.inclination_rad);
   std::string text;
@@ -38,7 +43,7 @@ std::string words_of(const contact::FlankPattern& p, const contact::PatternPlace
   else text = std::abs(inclination) < 50 ? "longitudinal" : "across the tooth";
   if (p.marked_share <= 0.95 && p.length_mm >= 1.3 * p.width_mm)
     text += fmt::format(", inclined {:.1f} deg", inclination);
-  const auto ends = edges_reached(p, place, compound_mm);
+  const auto ends = edges_reached(a, side, m);
   return text + (ends.empty() ? "; keeps off all edges" : fmt::format("; runs out at: {}", fmt::join(ends, ", ")));
 }
 
@@ -54,8 +59,7 @@ Verdict verdict_of(const RolledPair& analysis) {
   for (const RolledSide& side : analysis.sides) {
     beside |= side.kind.find("edge") != std::string::npos;
     for (std::size_t m = 0; m < side.flanks.size(); ++m)
-      for (auto& edge : edges_reached(side.roll.patterns[m], m < side.places.size() ? &side.places[m] : nullptr,
-                                      analysis.settings.compound_mm))
+      for (auto& edge : edges_reached(analysis, side, m))
         if (std::find(edges.begin(), edges.end(), edge) == edges.end()) edges.push_back(std::move(edge));
   }
   double line_load = 0;
@@ -85,7 +89,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Path of contact and pattern in one ring.
-Json zone_json(const ease_off::PairWords& words, const RolledSide& side, std::size_t m, double compound_mm) {
+Json zone_json(const RolledPair& a, const RolledSide& side, std::size_t m) {
+  const ease_off::PairWords& words = *a.words;
+  const double compound_mm = a.settings.compound_mm;
   const auto place = [&](const Vec2& at) { return Json{{words.x_key, at.x()}, {words.y_key, at.y()}}; };
   const contact::FlankPattern& p = side.roll.patterns[m];
   Json zone;
@@ -108,7 +114,7 @@ Json zone_json(const ease_off::PairWords& words, const RolledSide& side, std::si
                            {"pitches", (p.path.back().phi_2 - p.path.front().phi_2) / side.pitch_rad}};
   else zone["rolled_path"] = nullptr;
   const contact::PatternPlace* at = m < side.places.size() ? &side.places[m] : nullptr;
-  zone["pattern"] = {{"words", words_of(p, at, compound_mm)},
+  zone["pattern"] = {{"words", words_of(a, side, m)},
                      {"share", p.marked_share},
                      {words.x_key, {p.inner_mm, p.outer_mm}},
                      {words.y_key, {p.low_mm, p.high_mm}},
@@ -225,8 +231,7 @@ std::string contact_json(const RolledPair& a) {
     s["motion_curve"] = ease_off::motion_json(motion_of(side), kMotionStride);
     s["ease_off"] = ease_off::map_json(ease_off_of(a, side));
     s["zones"] = Json::array();
-    for (std::size_t m = 0; m < side.flanks.size(); ++m)
-      s["zones"].push_back(zone_json(*a.words, side, m, a.settings.compound_mm));
+    for (std::size_t m = 0; m < side.flanks.size(); ++m) s["zones"].push_back(zone_json(a, side, m));
     json["flanks"].push_back(std::move(s));
   }
   ease_off::add_misaligned(json, a.misaligned);
@@ -236,8 +241,8 @@ std::string contact_json(const RolledPair& a) {
 }
 
 std::string contact_summary(const RolledPair& a) {
-  std::string out = fmt::format("contact of {} with a pinion of {} teeth (gear {} teeth), compound {:g} um\n",
-                                a.job_name, a.pinion_teeth, a.gear_teeth, a.settings.compound_mm * app::kUm);
+  std::string out = fmt::format("contact of {} with a {} of {} teeth ({} {} teeth), compound {:g} um\n", a.job_name,
+                                a.other, a.pinion_teeth, a.carrier, a.gear_teeth, a.settings.compound_mm * app::kUm);
   if (!a.mate.empty())
     out += fmt::format("  rolled with {}: shafts at {:g} deg, {:.6g} mm apart\n", a.mate, degrees(a.shaft_angle_rad),
                        a.distance_mm);
@@ -264,8 +269,7 @@ std::string contact_summary(const RolledPair& a) {
                            zone, degrees(path->B_rad), path->ratio, path->from.x(), path->to.x());
       out += fmt::format("    {}pattern: {:.1f} % of the flank, {} {:.2f} to {:.2f}, {} {:.2f} to {:.2f} mm; {}\n",
                          zone, p.marked_share * 100, a.words->x_text, p.inner_mm, p.outer_mm, a.words->y_text, p.low_mm,
-                         p.high_mm,
-                         words_of(p, m < side.places.size() ? &side.places[m] : nullptr, a.settings.compound_mm));
+                         p.high_mm, words_of(a, side, m));
     }
   }
   out += ease_off::misaligned_summary(a.misaligned);

@@ -67,9 +67,10 @@ struct InvolutePinion {
 struct RolledPair {
   const ease_off::PairWords* words = nullptr;
   std::string job_name, job_file;
-  std::string mate;                             ///< whose job it is; empty: the mate of the job's own rules
-  double shaft_angle_rad = 0, distance_mm = 0;  ///< of the shafts of gears with a job each
-  int pinion_teeth = 0, gear_teeth = 0;
+  std::string mate;                                ///< whose job it is; empty: the mate of the job's own rules
+  double shaft_angle_rad = 0, distance_mm = 0;     ///< of the shafts of gears with a job each
+  std::string carrier = "gear", other = "pinion";  ///< in words: the gear of the grid, and its mate
+  int pinion_teeth = 0, gear_teeth = 0;            ///< of the other and of the carrier
   job::ContactSettings settings;
   double pitch_radius_mm = 0;  ///< lever of the transmission error
   std::optional<InvolutePinion> involute_pinion;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "app/process/rolled/figures.h"
 #include "app/process/under_load/settings.h"
@@ -142,12 +143,7 @@ process::ValueOrErrors<Shafts> accepted(const JobGear& job, const JobGear& mate,
   if (asked.optimise)
     return refuse("--optimise knows face gears with the pinion of their shaper and equal_base_circle_bevel_gear pairs");
   if (asked.pinion_teeth) return refuse("--pinion-teeth contradicts the mate, which has its own");
-  auto shafts = shafts_of(job, mate, asked);
-  const bool measured = !asked.measured.files.empty();
-  if (shafts.refused() == nullptr && (asked.as_cut || measured) && !shafts.value().job_is_gear)
-    return refuse(fmt::format("{} is told of the gear that carries the grid, {}: run it with --mate {}",
-                              measured ? "--measured" : "--as-cut", mate.job.file, job.job.file));
-  return shafts;
+  return shafts_of(job, mate, asked);
 }
 
 process::ValueOrErrors<process::ContactFound> roll_pair(const JobGear& job, const JobGear& mate, const Shafts& shafts,
@@ -160,6 +156,7 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const JobGear& job, cons
   a.settings = under_load::contact_settings(job.job, asked);
   a.settings.pinion_teeth = a.pinion_teeth = roles.pinion.part->teeth();
   a.gear_teeth = roles.gear.part->teeth();
+  if (shafts.pinion_carries) std::swap(a.carrier, a.other);
   a.shaft_angle_rad = std::abs(shafts.angle_rad), a.distance_mm = shafts.distance_mm;
   Asked rolls;
   rolls.pair = {roles.gear.part.get(), roles.pinion.part.get(),

@@ -1,6 +1,7 @@
 #include "app/process/toothed_pair/shafts.h"
 
 #include <cmath>
+#include <utility>
 
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/space_sheet.h"
@@ -16,16 +17,20 @@ constexpr double kFits = 1e-3;
 constexpr double kBesideParallel = radians(1), kBesideSkew = radians(5);
 
 contact::MatePlace outside(const Shafts& shafts, const JobGear&, const JobGear&, const contact::Misalignment& moved) {
+  contact::Misalignment of_carrier = moved;
+  if (shafts.pinion_carries) std::swap(of_carrier.axial_mm, of_carrier.gear_axial_mm);
   contact::OutsideShafts at;
   at.angle_rad = shafts.angle_rad;
   at.distance_mm = shafts.distance_mm;
   at.skew = shafts.skew;
-  return contact::outside_place(at, moved);
+  return contact::outside_place(at, of_carrier);
 }
-contact::MatePlace on_face_gear(const Shafts&, const JobGear& gear, const JobGear& pinion,
+contact::MatePlace on_face_gear(const Shafts& shafts, const JobGear& carrier, const JobGear& other,
                                 const contact::Misalignment& moved) {
-  const auto& sheet = dynamic_cast<const face_gear::SpaceSheet&>(gear.part->space(0));
-  return contact::pinion_place(sheet.surface(), pinion.part->teeth(), moved);
+  const JobGear &face = shafts.pinion_carries ? other : carrier, &pinion = shafts.pinion_carries ? carrier : other;
+  const auto& sheet = dynamic_cast<const face_gear::SpaceSheet&>(face.part->space(0));
+  const contact::MatePlace place = contact::pinion_place(sheet.surface(), pinion.part->teeth(), moved);
+  return shafts.pinion_carries ? contact::seen_from_mate(place) : place;
 }
 
 /// What the keys of a gear say of its shaft.
@@ -141,8 +146,10 @@ process::ValueOrErrors<Shafts> crossing(const JobGear& gear, const JobGear& pini
 process::ValueOrErrors<Shafts> shafts_of(const JobGear& job, const JobGear& mate, const process::ContactAsked& asked) {
   Shafts out;
   const bool face = job.job.face_gear() != nullptr, other_face = mate.job.face_gear() != nullptr;
-  out.job_is_gear = face != other_face ? face : job.part->teeth() >= mate.part->teeth();
-  const JobGear &gear = out.job_is_gear ? job : mate, &pinion = out.job_is_gear ? mate : job;
+  const bool job_is_larger = face != other_face ? face : job.part->teeth() >= mate.part->teeth();
+  out.pinion_carries = !job_is_larger && (asked.as_cut || !asked.measured.files.empty());
+  out.job_is_gear = job_is_larger || out.pinion_carries;
+  const JobGear &gear = job_is_larger ? job : mate, &pinion = job_is_larger ? mate : job;
   const auto a = cone_of(gear.job), b = cone_of(pinion.job);
   const bool cylinder = pinion.job.cylindrical_gear() != nullptr;
   if (face || other_face) {

@@ -200,5 +200,19 @@ TEST(ToothedPair, AgreesWithPointClouds) {
   }
 }
 
+/// Either gear may carry the grid: the error of its turn is that of the other's by the ratio.
+TEST(ToothedPair, EitherGearCarriesTheGrid) {
+  const Part gear = spiral(nasa_gear()), pinion = spiral(nasa_pinion());
+  const contact::Misalignment moved{0.1, 0.05, 0.001, -0.04}, other_way{0.1, -0.04, 0.001, 0.05};
+  const MatePlace place = square_shafts(0, moved), back = contact::seen_from_mate(place),
+                  written = square_shafts(0, other_way);
+  EXPECT_LT((back.axes - written.axes).norm(), 1e-14);
+  EXPECT_LT((back.origin - written.origin).norm(), 1e-14);
+  const double of_gear = rolled(gear, pinion, place, -1).error_range_rad,
+               of_pinion = rolled(pinion, gear, back, -1).error_range_rad;
+  EXPECT_GT(of_gear, 1e-5);
+  EXPECT_NEAR(of_pinion / 3, of_gear, 0.02 * of_gear);  // positions differ: eight a pitch of either
+}
+
 }  // namespace
 }  // namespace toothpath::test
