@@ -223,7 +223,7 @@ Result<report::RunReport> ProgramChecker::prove(std::string text, const std::str
 
 void add_check(Commands& commands) {
   commands.push_back(command_of<CheckRequest>(
-      "check", "proves a program that is already there against the job's gear",
+      "check", "proves an NC program that exists already against its job",
       [](OptionSet& set, CheckRequest& request) {
         job_options(set, request);
         set.file("PROGRAM", request.program_file, "NC program in the dialect of the job's machine");
@@ -233,7 +233,7 @@ void add_check(Commands& commands) {
             "--fixture", request.fixture_files,
             "closed mesh of what holds the work and turns with it (STL or OBJ, mm, gear frame); repeatable. Facets are "
             "taken as exact: what they leave out of the true part must lie within the clearance of the job");
-        set.files("--measured", request.measured.files, "what was measured, which the program answers (see correct)");
+        set.files("--measured", request.measured.files, "what was measured, where the program is compensated for it (see correct)");
         set.number("--ball-diameter", request.measured.ball_diameter_mm,
                    "the measured points are centres of a ball of this diameter (see correct)", job::kBallDiameter);
       },

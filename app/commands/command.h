@@ -4,7 +4,7 @@
 // A command stands in one file of this folder, which ends with
 //
 //     void add_surface(Commands& commands) {
-//       commands.push_back(command_of<JobRequest>("surface", "flanks, limits, inspection grid and mesh of the gear",
+//       commands.push_back(command_of<JobRequest>("surface", "limits, inspection points and meshes of the gear",
 //       job_options, run_surface));
 //     }
 //
@@ -51,10 +51,10 @@ struct CommandGroup {
   const char* description;
 };
 inline constexpr CommandGroup kStudies = {"study",
-                                          "error against run time, line against ball, extreme cases, section models, "
+                                          "error against run time, milling strategies, extreme cases, section models, "
                                           "double helical gears, errors of the machine"};
-inline constexpr CommandGroup kReferences = {"reference", "all keys of the files that people write"};
-inline constexpr CommandGroup kMachines = {"machine", "what a machine file says, and how to prove it"};
+inline constexpr CommandGroup kReferences = {"reference", "all keys of job files and machine files"};
+inline constexpr CommandGroup kMachines = {"machine", "what a machine file says, and programs that test it"};
 
 struct Command {
   using Action = std::function<CommandOutcome(const CommonRequest&)>;

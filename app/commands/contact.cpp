@@ -150,7 +150,7 @@ CommandOutcome run_contact(const ContactRequest& request) {
 
 void add_contact(Commands& commands) {
   commands.push_back(command_of<ContactRequest>(
-      "contact", "gear and pinion rolled: contact pattern, transmission error, pairs",
+      "contact", "rolls the gear with its mate: contact pattern, transmission error, pairs in contact",
       [](OptionSet& set, ContactRequest& request) {
         job_options(set, request);
         set.whole_number("--pinion-teeth", request.pinion_teeth,

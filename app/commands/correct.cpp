@@ -1,4 +1,4 @@
-// `toothpath correct JOB --measured FILE --out DIR`: `run` again, with flanks that answer a measurement.
+// `toothpath correct JOB --measured FILE --out DIR`: `run` again, with flanks compensated for measured deviations.
 #include "app/commands/run.h"
 #include "app/commands/surface.h"
 #include "app/job/measured_points.h"
@@ -7,7 +7,7 @@ namespace toothpath::commands {
 
 void add_correct(Commands& commands) {
   commands.push_back(command_of<RunRequest>(
-      "correct", "the whole way again, with flanks that answer a measurement",
+      "correct", "like run, but compensated for measured deviations",
       [](OptionSet& set, RunRequest& request) {
         job_options(set, request);
         set.required_files("--measured", request.measured.files,

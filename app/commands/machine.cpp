@@ -242,7 +242,7 @@ void add_machine(Commands& commands) {
       "test", "programs that hold the tip of a test bar on one point while the rotary axes turn: run them in air",
       [](OptionSet& set, MachineRequest& request) {
         set.file("MACHINE", request.machine_file, kMachine);
-        set.out_dir(request.out_dir, "directory for the programs and their page; made where it does not exist");
+        set.out_dir(request.out_dir, "folder for the programs and their page; created if missing");
         set.number("--tool-length", request.tool_length_mm,
                    "gauge line to the tip of the test bar (default: 100, 60 or 30, what fits)", {1, 5000, " mm"});
       },

@@ -829,8 +829,8 @@ void new_options(OptionSet& set, NewRequest& request) {
 
 void add_new(Commands& commands) {
   commands.push_back(command_of<NewRequest>(
-      "new", "a job for a gear and a machine, asked for on a terminal or said by options, and tried as it stands",
-      new_options, run_new));
+      "new", "writes a job file: asks on a terminal, or takes options; tries the job before it writes it", new_options,
+      run_new));
 }
 
 }  // namespace toothpath::commands

@@ -31,9 +31,7 @@ void OptionSet::file(const char* name, std::string& value, const char* help) {
   not_empty(app_.add_option(name, value, help))->required()->type_name("FILE");
 }
 
-void OptionSet::out_dir(std::string& value) {
-  out_dir(value, "directory for the results; made where it does not exist");
-}
+void OptionSet::out_dir(std::string& value) { out_dir(value, "folder for the results; created if missing"); }
 void OptionSet::out_dir(std::string& value, const char* help) {
   not_empty(app_.add_option("--out", value, help))->required()->type_name("DIR");
 }

@@ -104,7 +104,7 @@ CommandOutcome run_job(const RunRequest& request) {
 
 void add_run(Commands& commands) {
   commands.push_back(command_of<RunRequest>(
-      "run", "the whole way from the job to a proven NC program",
+      "run", "plans the tool paths, writes the NC program and proves it",
       [](OptionSet& set, RunRequest& request) {
         job_options(set, request);
         set.text("--restart", request.restart,

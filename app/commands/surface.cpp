@@ -54,7 +54,7 @@ CommandOutcome run_surface(const SurfaceRequest& request) {
 
 void add_surface(Commands& commands) {
   commands.push_back(command_of<SurfaceRequest>(
-      "surface", "flanks, limits, inspection grid and mesh of the gear",
+      "surface", "limits, inspection points and meshes of the gear; plans nothing",
       [](OptionSet& set, SurfaceRequest& request) {
         job_options(set, request);
         cad_options(set, request.cad);

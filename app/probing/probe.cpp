@@ -186,7 +186,7 @@ CommandOutcome run_probe(const ProbeRequest& request) {
 
 void add_probe(commands::Commands& commands) {
   commands.push_back(commands::command_of<ProbeRequest>(
-      "probe", "a program that touches a blank or its teeth; from its results where the gear stands",
+      "probe", "writes a program that touches the blank or its teeth; finds from the results where the gear stands",
       [](commands::OptionSet& set, ProbeRequest& request) {
         commands::job_options(set, request);
         set.number("--ball-diameter", request.ball_mm, "of the probe", job::kBallDiameter);

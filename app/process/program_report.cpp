@@ -374,7 +374,7 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   posted.file = "program" + dialect->extension;
   posted.name_on_control = text::name_on_control(*dialect, header);
   std::string whole = std::move(text->text);
-  if (!restart) {  // ahead of the program, which gets its name last
+  if (!restart) {  // ahead of the program, which is written last
     auto parts = clock.run("NC text", [&] {
       return post_parts(posted.axes, *dialect, header, header.program_number + text->numbers, request, output);
     });

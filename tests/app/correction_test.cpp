@@ -334,7 +334,7 @@ chord_tolerance = 0.002
   const auto run = run_program({"correct", dir / "job.toml", "--measured", dir / "bent.csv", "--out", dir / "out"});
   EXPECT_EQ(run.exit_code, 3);
   EXPECT_NE(
-      run.err.find("bent.csv: the flanks that answer it cannot be cut, the nominal ones can: it deviates by up to "
+      run.err.find("bent.csv: the flanks compensated for it cannot be cut, the nominal ones can: it deviates by up to "
                    "100.00 um"),
       std::string::npos)
       << run.err;

@@ -41,7 +41,8 @@ void begin_report(Run& run) {
                   most * 1000));
 }
 
-/// A refusal of flanks that answer a measurement: where the nominal ones are planned, the measurement is the cause.
+/// A refusal of flanks that are compensated for a measurement: where the nominal ones are planned, the measurement is
+/// the cause.
 Diagnostic with_measurement(Run& run, const proof::ProofLimits& limits, const process::FlankGrid& grid,
                             Diagnostic refused) {
   if (!run.gear.correction || refused.kind != DiagnosticKind::refused_input) return refused;
@@ -57,7 +58,8 @@ Diagnostic with_measurement(Run& run, const proof::ProofLimits& limits, const pr
     scatter = std::max(scatter, row.fit.residual_rms_mm);
   }
   refused.message = fmt::format(
-      "{}: the flanks that answer it cannot be cut, the nominal ones can: it deviates by up to {:.2f} um, a scatter of "
+      "{}: the flanks compensated for it cannot be cut, the nominal ones can: it deviates by up to {:.2f} um, a "
+      "scatter of "
       "{:.2f} um (rms) left out. Where that is the measurement, measure again; where it is the gear, let the ring "
       "begin "
       "farther from the undercut. In detail: {}",
