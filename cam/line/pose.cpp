@@ -285,10 +285,13 @@ std::optional<GapLine> LineFit::gap_along(const AxisLine<double>& axis, double t
   }
   std::vector<double> splits{line.t_from, line.ring_from, line.ring_to, line.t_to};
   const auto below_top = [&](const GapNode& q) { return q.depth - strip_.top; };
+  line.strip_to = line.t_top;
   if (strip_.top > kExactEnd)
     for (std::size_t k = 1; k < feet.size(); ++k)
-      if (below_top(feet[k - 1]) > 0 && below_top(feet[k]) <= 0)
-        splits.push_back(std::clamp(crossing(axis, feet[k - 1], feet[k], below_top), line.t_from, line.t_to));
+      if (below_top(feet[k - 1]) > 0 && below_top(feet[k]) <= 0) {
+        line.strip_to = crossing(axis, feet[k - 1], feet[k], below_top);
+        splits.push_back(std::clamp(line.strip_to, line.t_from, line.t_to));
+      }
   if (!add_nodes(axis, std::move(splits), first->at, line) || !extremes(axis, line)) return {};
   return line;
 }
@@ -371,8 +374,11 @@ bool LineFit::measure(StationPose& pose) const {
   auto line = gap_along(pose.axis, std::max(pose.angles.t_m, 0.0), pose.at);
   if (!line) return false;
   pose.gap = std::move(*line);
-  pose.covered =
-      pose.gap.t_top > 0 ? (pose.gap.ring_to - pose.gap.ring_from) / (pose.gap.t_top + std::max(pose.lift, 0.0)) : 0;
+  const GapLine& gap = pose.gap;
+  const auto share = [&](double top) {
+    return top > 0 ? (std::min(gap.ring_to, top) - gap.ring_from) / (top + std::max(pose.lift, 0.0)) : 0;
+  };
+  pose.covered = std::max(0.0, std::min(share(gap.t_top), share(gap.strip_to)));
   return true;
 }
 

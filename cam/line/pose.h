@@ -118,6 +118,7 @@ struct GapLine {
   double t_from = 0, t_to = 0;        ///< exact ends of the domain
   double ring_from = 0, ring_to = 0;  ///< of its part in the ring
   double t_top = 0;                   ///< where the foot is at the height of the tips, in the ring or not
+  double strip_to = 0;                ///< likewise at the top of the strip
   std::vector<GapNode> nodes;   ///< Chebyshev points from t_from to t_to, ends included, and the ends of ring and strip
   double least = 0;             ///< over the domain, between the nodes by parabolas
   Vec3 n_least = Vec3::Zero();  ///< normal at the foot of the least
@@ -164,8 +165,8 @@ struct StationPose {
   Vec3 up = Vec3::UnitZ();     ///< there
   Neighbourhood about;         ///< of the start: 12 deg and 0.06, or what the bend of the flank asks for
   GapLine gap;                 ///< empty (no nodes) where no foot lies in the domain
-  double covered = 0;          ///< share of the height of the line that lies in the ring
-  double lift = 0;             ///< of the ball end above the bottom of the strip, along the axis
+  double covered = 0;  ///< share of the height of the line that lies in the ring, or of the strip where it is less
+  double lift = 0;     ///< of the ball end above the bottom of the strip, along the axis
   [[nodiscard]] double tilt() const { return std::acos(axis.a.z()); }  ///< from the gear axis
   [[nodiscard]] double from_upright() const { return std::acos(std::clamp(axis.a.dot(up), -1.0, 1.0)); }
 };

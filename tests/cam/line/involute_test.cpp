@@ -269,6 +269,24 @@ TEST(Involute, EndsAreBoundAsCloselyAsFlanks) {
   EXPECT_LE(worst, kProof);
 }
 
+// The lowest strip of a helical flank leaves the ring aslant and before the strips above it: what its passes leave does
+// not depend on whether a station lies just there.
+TEST(Involute, PassesDoNotDependOnWhereTheirStationsLie) {
+  auto gear = shifted_spur();
+  gear.profile_shift = 0;
+  line::PassOptions o;
+  o.rotaries = line::Rotaries::tilt_stands;
+  o.enough_mm = 0.005;
+  for (const double half : {9.0, 10.1, 12.0}) {
+    gear.zones = {{radians(20), -half, half}};
+    const auto part = part_of(gear);
+    const auto f = *line::flank_task(*part, 0, 1);
+    const auto pass = line::plan_pass(line::LineFit(f, tapered(1.25), line::strips_of(f, 8).back()), o, 100);
+    ASSERT_TRUE(pass) << pass.error().message;
+    EXPECT_LT(pass->misfit_mm, 0.005) << half;
+  }
+}
+
 // Axes that differ in their last digits alone do not turn the frame in which the tool sees the gear: the gap stays what
 // it is.
 TEST(Involute, ATurnOfRoundingIsNone) {
