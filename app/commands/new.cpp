@@ -44,6 +44,7 @@ struct NewRequest : CommonRequest {
   std::string gear, route, machine, tools, unit, file, name;
   std::string points, points_unit, root, tip;  ///< of a gear by points
   std::string rexs, left_flank, ratio_of_roll;
+  std::string hand;  ///< of a spiral bevel gear by a drawing
   std::optional<int> component;
   std::optional<double> dedendum, root_radius;
   std::vector<std::string> said;  ///< of tools: "12: stick_out = 40"
@@ -81,6 +82,7 @@ std::vector<std::string> machine_names(bool shaper) {
   return names;
 }
 
+constexpr std::array<std::string_view, 2> kHandWords = {"left", "right"};
 constexpr std::array<std::string_view, 2> kFlankWords = {"concave", "convex"};
 constexpr std::array<std::string_view, 2> kRatioWords = {"work_per_cradle", "cradle_per_work"};
 
@@ -198,6 +200,8 @@ Expected<Wishes, std::vector<Diagnostic>> gear_wished(const NewRequest& request,
       return usage(
           fmt::format("--gear {}: that of --rexs is {}", printable(request.gear), word_of(*wishes.value().gear)));
     if (auto errors = belong("to --rexs", by_points); !errors.empty()) return errors;
+    if (auto errors = belong("to --rexs, whose file says it", {{"--hand", !request.hand.empty()}}); !errors.empty())
+      return errors;
     return wishes;
   }
   if (auto errors = belong("to a job without --rexs", {{"--component", request.component.has_value()},
@@ -214,8 +218,10 @@ Expected<Wishes, std::vector<Diagnostic>> gear_wished(const NewRequest& request,
       proposal::gear_words());
   if (auto* errors = gear.refused()) return *errors;
   wishes.gear = proposal::gear_of(gear.value());
-  if (wishes.gear == proposal::Gear::spiral_bevel)
-    return usage("--rexs is missing: a file with the settings of the generator that makes the spiral bevel gear");
+  if (wishes.gear != proposal::Gear::spiral_bevel)
+    if (auto errors = belong(fmt::format("to --gear {}", gear.value()).c_str(), {{"--hand", !request.hand.empty()}});
+        !errors.empty())
+      return errors;
   if (wishes.gear != proposal::Gear::flank_grid)
     if (auto errors = belong(fmt::format("to --gear {}", gear.value()).c_str(), by_points); !errors.empty())
       return errors;
@@ -363,6 +369,17 @@ DoneOrErrors wish_meridians(Wishes& wishes, proposal::PointsOfFile& points, cons
   return Ok{};
 }
 
+/// Of a spiral bevel gear by a drawing; without a terminal pinions are left-hand and wheels right-hand.
+DoneOrErrors wish_hand(Wishes& wishes, const std::string& given, const Dialog& dialog) {
+  const bool pinion = wishes.at(Quantity::teeth) <= wishes.at(Quantity::mate_teeth);
+  const auto word =
+      dialog.word("--hand", "hand of its spiral; its mate has the other",
+                  given.empty() && !dialog.asks() ? std::string(kHandWords[pinion ? 0 : 1]) : given, kHandWords);
+  if (auto* errors = word.refused()) return *errors;
+  wishes.hand = word.value() == kHandWords[0] ? -1 : 1;
+  return Ok{};
+}
+
 /// All numbers of the gear, each with the limits that are known before it.
 DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, const Dialog& dialog,
                           const proposal::ChosenMachine& machine) {
@@ -397,6 +414,7 @@ DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, const Dialo
       if (auto asked = wish_meridians(wishes, *points, request, dialog); asked.refused()) return asked;
     if (auto asked = wish_number(wishes, question, given, dialog, machine); asked.refused()) return asked;
   }
+  if (wishes.gear == proposal::Gear::spiral_bevel) return wish_hand(wishes, request.hand, dialog);
   if (!by_points) return Ok{};
   flank_grid::FlankGridParameters grid = *wishes.grid;
   grid.fillet_radius_mm = wishes.at(Quantity::fillet_radius);
@@ -818,6 +836,8 @@ void new_options(OptionSet& set, NewRequest& request) {
            "WHICH", kFlankWords);
   set.word("--ratio-of-roll", request.ratio_of_roll, "sense of ratio_of_roll where the file leaves it open", "SENSE",
            kRatioWords);
+  set.word("--hand", request.hand, "hand of a spiral bevel gear; without: pinions left, wheels right", "HAND",
+           kHandWords);
   set.number("--dedendum-coefficient", request.dedendum, "of a cylindrical gear whose REXS file has no tool",
              kRackCoefficient);
   set.number("--root-radius-coefficient", request.root_radius, "of the rounding of its rack's tip", kRackCoefficient);

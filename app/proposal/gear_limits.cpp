@@ -9,6 +9,7 @@
 #include "geometry/base/angle.h"
 #include "geometry/cylindrical/part.h"
 #include "geometry/face_gear/part.h"
+#include "geometry/spiral_bevel/basic_settings.h"
 
 namespace toothpath::proposal {
 namespace {
@@ -90,8 +91,10 @@ cylindrical::CylindricalParameters cylindrical_parameters(const Wishes& wishes) 
   p.module_mm = wishes.at(Quantity::module);
   p.pressure_angle_rad = radians(wishes.at(Quantity::pressure_angle));
   p.profile_shift = wishes.at(Quantity::profile_shift);
-  const double half = 0.5 * wishes.at(Quantity::face_width);
-  p.zones = {{radians(wishes.at(Quantity::helix)), -half, half}};
+  const double half = 0.5 * wishes.at(Quantity::face_width), helix = radians(wishes.at(Quantity::helix)),
+               groove = 0.5 * kGrooveModules * p.module_mm;
+  if (wishes.gear == Gear::cylindrical_double_helical) p.zones = {{-helix, -half, -groove}, {helix, groove, half}};
+  else p.zones = {{helix, -half, half}};
   return p;
 }
 
@@ -121,6 +124,31 @@ straight_bevel::StraightBevelParameters straight_bevel_parameters(const Wishes& 
       break;
   }
   return p;
+}
+
+Expected<spiral_bevel::SpiralBevelParameters, std::vector<Refusal>> spiral_bevel_parameters(const Wishes& wishes) {
+  if (wishes.spiral) return *wishes.spiral;
+  spiral_bevel::Drawing drawing;
+  drawing.teeth = static_cast<int>(wishes.at(Quantity::teeth));
+  drawing.mate_teeth = static_cast<int>(wishes.at(Quantity::mate_teeth));
+  drawing.hand = wishes.hand;
+  drawing.outer_transverse_module_mm = wishes.at(Quantity::module);
+  drawing.spiral_angle_rad = radians(wishes.at(Quantity::spiral));
+  drawing.pressure_angle_rad = radians(wishes.at(Quantity::pressure_angle));
+  drawing.face_width_mm = wishes.at(Quantity::face_width);
+  drawing.cutter_radius_mm = wishes.at(Quantity::cutter_radius);
+  std::vector<Refusal> refused;
+  for (const double share : kBevelRoundings) {
+    auto settings = spiral_bevel::basic_settings(drawing, rounded(share * drawing.outer_transverse_module_mm));
+    if (auto* refusal = settings.refused()) {
+      refused = {std::move(*refusal)};
+      continue;
+    }
+    auto made = spiral_bevel::SpiralBevelGear::make(settings.value());
+    if (auto* refusals = made.refused()) refused = std::move(*refusals);
+    else return std::move(settings.value());
+  }
+  return refused;
 }
 
 std::optional<FaceRange> face_range(const Wishes& wishes) {

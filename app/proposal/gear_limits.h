@@ -30,6 +30,9 @@ struct FaceRange {
 [[nodiscard]] cylindrical::CylindricalParameters cylindrical_parameters(const Wishes& wishes);
 
 /// Gleason proportions for shafts at 90 deg, the largest rounding up to 0.3 modules that the crown gear's teeth carry.
+/// Refused, with keys of a job: settings that make no gear.
+[[nodiscard]] Expected<spiral_bevel::SpiralBevelParameters, std::vector<Refusal>> spiral_bevel_parameters(
+    const Wishes& wishes);
 [[nodiscard]] straight_bevel::StraightBevelParameters straight_bevel_parameters(const Wishes& wishes);
 
 /// Nothing: no tooth has room, or numbers are missing.

@@ -77,10 +77,13 @@ std::string cylindrical_text(const Wishes& wishes) {
   if (p.thickness_allowance_mm < 0)
     text += line("thickness_allowance", exact(p.thickness_allowance_mm), "of the teeth, on the reference cylinder");
   if (p.bore_diameter_mm > 0) text += line("bore_diameter", exact(p.bore_diameter_mm));
-  text += "\n[[gear.zone]]                    # one ring of teeth\n";
-  text += line("helix_angle", exact(degrees(p.zones.front().helix_angle_rad)), "above 0 is right hand");
-  text += line("from", exact(p.zones.front().from_mm), "along the gear axis");
-  text += line("to", exact(p.zones.front().to_mm));
+  if (p.groove_diameter_mm) text += line("groove_diameter", exact(*p.groove_diameter_mm));
+  for (const cylindrical::CylindricalZone& zone : p.zones) {
+    text += "\n[[gear.zone]]                    # one ring of teeth\n";
+    text += line("helix_angle", exact(degrees(zone.helix_angle_rad)), "above 0 is right hand");
+    text += line("from", exact(zone.from_mm), "along the gear axis");
+    text += line("to", exact(zone.to_mm));
+  }
   return text;
 }
 
@@ -162,9 +165,27 @@ std::string cut_text(const spiral_bevel::Cut& cut) {
   return text;
 }
 
+/// What a proposal took beside the numbers of a drawing.
+std::string assumed_text(const Wishes& wishes) {
+  return fmt::format(
+      "\n# Proposed from a drawing, not a sheet of a generator: {:.0f}/{:.0f} teeth, outer transverse module {:g} mm,\n"
+      "# spiral angle {:g} deg in the middle of the face, pressure angle {:g} deg, face mill of {:g} mm radius. "
+      "Assumed:\n"
+      "# shafts at 90 deg without offset or backlash; Gleason's depths (working depth 1.7 m, clearance 0.188 m, "
+      "addendum\n"
+      "# of the wheel 0.46 m + 0.39 m (z1/z2)^2); duplex taper, at most 1.3 times the standard one (ISO 23509); both "
+      "flanks\n"
+      "# cut at once by spread blades (completing) on the basic setting of the generator: no offset, tilt or modified "
+      "roll.\n"
+      "# The mate has the same numbers with its teeth exchanged and the other hand: toothpath contact JOB --mate "
+      "OTHER.\n",
+      wishes.at(Quantity::teeth), wishes.at(Quantity::mate_teeth), wishes.at(Quantity::module),
+      wishes.at(Quantity::spiral), wishes.at(Quantity::pressure_angle), wishes.at(Quantity::cutter_radius));
+}
+
 std::string spiral_bevel_text(const Wishes& wishes) {
   const spiral_bevel::SpiralBevelParameters& p = *wishes.spiral;
-  std::string text = "\n[gear]\ntype = \"spiral_bevel_gear\"\n";
+  std::string text = (wishes.drawn() ? assumed_text(wishes) : "\n") + "[gear]\ntype = \"spiral_bevel_gear\"\n";
   text += line("teeth", fmt::format("{}", p.teeth));
   text += line("hand", p.hand > 0 ? "\"right\"" : "\"left\"");
   text += line("shaft_angle", exact(degrees(p.shaft_angle_rad)), "of the pair");
@@ -335,7 +356,7 @@ std::string shaping_text() {
 std::string gear_text(const std::string& name, const Wishes& wishes) {
   return fmt::format("schema = 1\nname = {}\n", toml::quoted(name)) +
          (wishes.gear == Gear::bevel_herringbone ? bevel_text(wishes)
-          : wishes.gear == Gear::cylindrical     ? cylindrical_text(wishes)
+          : is_cylindrical(wishes.gear)          ? cylindrical_text(wishes)
           : wishes.gear == Gear::straight_bevel  ? straight_bevel_text(wishes)
           : wishes.gear == Gear::spiral_bevel    ? spiral_bevel_text(wishes)
           : wishes.gear == Gear::flank_grid      ? flank_grid_text(wishes)
@@ -351,9 +372,9 @@ std::string job_text(const Draft& draft, const LibraryWords& library, const std:
   text += "\n[setup]\n";
   text += line("origin", vector_text(draft.place.origin_mm), "gear frame in machine coordinates, all rotaries at zero");
   text += line("axis", draft.up ? "\"up\"" : "\"down\"",
-               !draft.up                                ? "gear z points down: apex on top"
-               : draft.wishes.gear == Gear::cylindrical ? "the machine lays the axis down: the tool comes in radially"
-                                                        : "teeth towards the spindle");
+               !draft.up                           ? "gear z points down: apex on top"
+               : is_cylindrical(draft.wishes.gear) ? "the machine lays the axis down: the tool comes in radially"
+                                                   : "teeth towards the spindle");
   text += line("work_offset", toml::quoted(draft.work_offset), "the program counts from it");
   text += line("work_offset_at", vector_text(draft.place.origin_mm));
   const auto tool = [&](const tool::ToolAssembly& t) {

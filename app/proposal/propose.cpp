@@ -28,6 +28,10 @@ std::string option_of(const std::string& key) {
                                                               {"teeth", "--teeth"},
                                                               {"shaper_tip_radius", "--tip-radius"},
                                                               {"module", "--module"},
+                                                              {"blade_point_radius", "--cutter-radius"},
+                                                              {"radial_distance", "--cutter-radius"},
+                                                              {"sliding_base", "--spiral"},
+                                                              {"tip_angle", "--spiral"},
                                                               {"pressure_angle", "--pressure-angle"},
                                                               {"offset", "--offset"},
                                                               {"helix_angle", "--helix"},
@@ -96,20 +100,26 @@ double tip_diameter_mm(const cylindrical::CylindricalParameters& p) {
 }
 
 Expected<ChosenGear, std::vector<Diagnostic>> choose_cylindrical(const Wishes& wishes) {
+  const double m = wishes.at(Quantity::module), width = wishes.at(Quantity::face_width);
+  if (wishes.gear == Gear::cylindrical_double_helical && !(width >= kLeastDoubleModules * m))
+    return std::vector{
+        fail("--face-width: {:.4g} mm have no room for two rings and the groove between them, which take "
+             "{:.4g} mm",
+             width, kLeastDoubleModules * m)};
   auto made = cylindrical::CylindricalGear::make(cylindrical_parameters(wishes));
   if (auto* refusals = made.refused())
     return wishes.cylinder ? of_file(std::move(*refusals), "--rexs") : located(std::move(*refusals));
   const cylindrical::CylindricalGear& gear = made.value();
-  const cylindrical::CylindricalZone& zone = gear.parameters().zones.front();
+  const double from = gear.parameters().zones.front().from_mm, to = gear.parameters().zones.back().to_mm;
   ChosenGear chosen;
   chosen.diameter_mm = gear.tip_diameter();
   if (wishes.cylinder) chosen.module_mm = gear.parameters().module_mm;
   chosen.facts = cylindrical_facts(gear);
   chosen.part = {0.5 * gear.tip_diameter(),
-                 zone.from_mm,
-                 zone.to_mm,
+                 from,
+                 to,
                  true,
-                 cylinder_places(zone.from_mm, zone.to_mm, 0.5 * gear.root_diameter(), 0.5 * gear.tip_diameter()),
+                 cylinder_places(from, to, 0.5 * gear.root_diameter(), 0.5 * gear.tip_diameter()),
                  gear.parameters().teeth};
   return chosen;
 }
@@ -140,12 +150,15 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_straight_bevel(const Wishes
 }
 
 Expected<ChosenGear, std::vector<Diagnostic>> choose_spiral_bevel(const Wishes& wishes) {
-  auto made = spiral_bevel::SpiralBevelGear::make(*wishes.spiral);
+  auto parameters = spiral_bevel_parameters(wishes);
+  if (auto* refusals = parameters.refused()) return located(std::move(*refusals));
+  auto made = spiral_bevel::SpiralBevelGear::make(parameters.value());
   if (auto* refusals = made.refused()) return of_file(std::move(*refusals), "--rexs");
   const spiral_bevel::SpiralBevelGear& gear = made.value();
   const auto& p = gear.parameters();
   const auto& ring = gear.space().outline();
   ChosenGear chosen;
+  chosen.spiral = std::make_shared<const spiral_bevel::SpiralBevelParameters>(p);
   chosen.diameter_mm = 2 * ring.chart.r(ring.s_from, gear.space().tip(ring.s_from));
   chosen.module_mm = gear.body().module_mm;
   chosen.facts = spiral_bevel_facts(gear);
@@ -325,7 +338,7 @@ Expected<ChosenMachine, std::vector<Diagnostic>> choose_machine(const Wishes& wi
 }
 
 Expected<ChosenGear, std::vector<Diagnostic>> choose_gear(const Wishes& wishes) {
-  if (wishes.gear == Gear::cylindrical) return choose_cylindrical(wishes);
+  if (is_cylindrical(wishes.gear)) return choose_cylindrical(wishes);
   if (wishes.gear == Gear::straight_bevel) return choose_straight_bevel(wishes);
   if (wishes.gear == Gear::spiral_bevel) return choose_spiral_bevel(wishes);
   if (wishes.gear == Gear::flank_grid) return choose_flank_grid(wishes);
@@ -338,6 +351,7 @@ Result<Draft> draft_of(const std::string& name, const Wishes& wishes, const Chos
   draft.name = name;
   draft.wishes = wishes;
   if (gear.module_mm > 0) draft.wishes[Quantity::module] = gear.module_mm;
+  if (gear.spiral) draft.wishes.spiral = gear.spiral;
   draft.up = gear.part.up;
   draft.assumed = machine.assumed;
   draft.work_offset = machine.work_offset;
@@ -351,7 +365,7 @@ Result<Draft> draft_of(const std::string& name, const Wishes& wishes, const Chos
 
 std::optional<double> least_swing_mm(const Wishes& wishes) {
   if (!wishes.gear || *wishes.gear == Gear::spiral_bevel || *wishes.gear == Gear::flank_grid) return std::nullopt;
-  if (*wishes.gear == Gear::cylindrical) {
+  if (is_cylindrical(wishes.gear)) {
     for (const Quantity known : {Quantity::teeth, Quantity::module, Quantity::helix, Quantity::profile_shift})
       if (!wishes[known]) return std::nullopt;
     return tip_diameter_mm(cylindrical_parameters(wishes));

@@ -27,8 +27,9 @@ struct ChosenMachine {
 struct ChosenGear {
   std::optional<face_gear::FaceGear> face;
   std::optional<bevel_gear::FingerCutterDesign> bevel;
-  FaceFacts facts;   ///< of a gear that ball mills make
-  PartInSpace part;  ///< with its places of the tool
+  FaceFacts facts;                                                    ///< of a gear that ball mills make
+  PartInSpace part;                                                   ///< with its places of the tool
+  std::shared_ptr<const spiral_bevel::SpiralBevelParameters> spiral;  ///< where it is one
   double diameter_mm = 0;
   double module_mm = 0;  ///< of a gear whose numbers stand in a file
 };

@@ -11,14 +11,14 @@
 namespace toothpath::proposal {
 namespace {
 
-constexpr std::string_view kGearWords[] = {"face",        "double_helical", "offset",       "bevel_herringbone",
-                                           "cylindrical", "straight_bevel", "spiral_bevel", "flank_grid"};
+constexpr std::string_view kGearWords[] = {
+    "face",           "double_helical", "offset",    "bevel_herringbone", "cylindrical", "cylindrical_double_helical",
+    "straight_bevel", "spiral_bevel",   "flank_grid"};
 constexpr std::string_view kRouteWords[] = {"ball", "line", "shaped", "finger"};
 constexpr Route kFaceRoutes[] = {Route::line, Route::ball, Route::shaped};
 constexpr Route kDoubleRoutes[] = {Route::line, Route::ball};
 constexpr Route kBevelRoutes[] = {Route::finger};
-constexpr Route kBallRoutes[] = {Route::ball};
-constexpr Route kStraightBevelRoutes[] = {Route::ball, Route::line};
+constexpr Route kMillRoutes[] = {Route::ball, Route::line};
 
 constexpr Question kQuestions[] = {
     {Quantity::teeth, "--teeth", "teeth of the gear", {10, 1000}, true},
@@ -30,7 +30,11 @@ constexpr Question kQuestions[] = {
      {0.3, 20, " mm"},
      false},
     {Quantity::pressure_angle, "--pressure-angle", "pressure angle", {14.5, 30, " deg"}, false},
-    {Quantity::helix, "--helix", "helix angle of the shaper, or of the cylindrical gear", {-45, 45, " deg"}, false},
+    {Quantity::helix,
+     "--helix",
+     "helix angle of the shaper, or of the cylindrical gear (its upper ring)",
+     {-45, 45, " deg"},
+     false},
     {Quantity::offset, "--offset", "offset of the axes", {-500, 500, " mm"}, false},
     {Quantity::tip_radius,
      "--tip-radius",
@@ -39,9 +43,22 @@ constexpr Question kQuestions[] = {
      false},
     {Quantity::inner, "--inner", "inner end of the teeth, radius", {1, 2000, " mm"}, false},
     {Quantity::outer, "--outer", "outer end of the teeth, radius", {1, 2000, " mm"}, false},
-    {Quantity::spiral, "--spiral", "spiral angle at the large end", {10, 45, " deg"}, false},
-    {Quantity::face_width, "--face-width", "face width, of a bevel gear along the pitch cone", {1, 500, " mm"}, false},
+    {Quantity::spiral,
+     "--spiral",
+     "spiral angle, of herringbones at the large end, of a spiral bevel gear in the middle of the face",
+     {10, 45, " deg"},
+     false},
+    {Quantity::face_width,
+     "--face-width",
+     "face width, of a bevel gear along the pitch cone, of two rings with their groove",
+     {1, 500, " mm"},
+     false},
     {Quantity::profile_shift, "--profile-shift", "profile shift in modules", {-2, 2}, false},
+    {Quantity::cutter_radius,
+     "--cutter-radius",
+     "mean radius of the face mill for a spiral bevel gear",
+     {1, 1000, " mm"},
+     false},
     {Quantity::fillet_radius,
      "--fillet-radius",
      "radius of the ball that rolls between flank and root of a gear by points",
@@ -50,9 +67,11 @@ constexpr Question kQuestions[] = {
     {Quantity::bore, "--bore", "diameter of the bore of a gear by points; 0: none", {0, 2000, " mm"}, false},
 };
 
+constexpr double kInch = 25.4;        // mm
 constexpr double kRadiusStep = 0.25;  // mm, of proposed ends
 
 constexpr double kDoubleWidth = 8, kLeastDoubleWidth = 5;  // of a double helical gear with its groove, modules
+constexpr double kDoubleHelix = 30;                        // deg, of a double helical cylinder
 
 double rounded(double x, double step) { return std::round(x / step) * step; }
 
@@ -78,6 +97,18 @@ double helix_with_room(const Wishes& wishes) {
 double least_shift(const Wishes& wishes) {
   const auto p = cylindrical_parameters(wishes);
   return std::max(0.0, std::ceil(20 * cylindrical::least_profile_shift(p, p.zones.front())) / 20);
+}
+
+/// Of the standard face mills the one that is nearest to the mean cone distance; smaller gears have one of their own.
+double proposed_cutter(const Wishes& wishes) {
+  constexpr double kDiameters[] = {2.75, 3.5, 4.5, 5, 6, 7.5, 9, 10.5, 12, 14, 16, 18, 21};  // inch
+  const double teeth = wishes.at(Quantity::teeth), delta = std::atan2(teeth, wishes.at(Quantity::mate_teeth)),
+               mean = 0.5 * (wishes.at(Quantity::module) * teeth / std::sin(delta) - wishes.at(Quantity::face_width));
+  if (mean < 0.5 * kInch * kDiameters[0]) return std::max(1.0, rounded(mean, 0.5));
+  double best = 0;
+  for (const double diameter : kDiameters)
+    if (const double radius = 0.5 * kInch * diameter; std::abs(radius - mean) < std::abs(best - mean)) best = radius;
+  return best;
 }
 
 std::optional<double> proposed_end(Quantity quantity, const Wishes& wishes) {
@@ -112,10 +143,11 @@ std::span<const Route> routes_of(Gear gear) {
     case Gear::offset: return kFaceRoutes;
     case Gear::double_helical: return kDoubleRoutes;
     case Gear::bevel_herringbone: return kBevelRoutes;
-    case Gear::cylindrical: return kBallRoutes;
+    case Gear::cylindrical:
+    case Gear::cylindrical_double_helical:
     case Gear::straight_bevel:
     case Gear::spiral_bevel:
-    case Gear::flank_grid: return kStraightBevelRoutes;
+    case Gear::flank_grid: return kMillRoutes;
   }
   return {};
 }
@@ -126,18 +158,18 @@ std::string_view word_of(Route route) { return kRouteWords[static_cast<std::size
 std::span<const Question> questions() { return kQuestions; }
 
 bool belongs(const Question& question, Gear gear) {
-  if (gear == Gear::spiral_bevel) return false;
   const bool by_points = question.what == Quantity::fillet_radius || question.what == Quantity::bore;
   if (gear == Gear::flank_grid || by_points)
     return gear == Gear::flank_grid && (by_points || question.what == Quantity::teeth);
-  const bool herringbone = gear == Gear::bevel_herringbone, cylindrical = gear == Gear::cylindrical,
-             bevel = herringbone || gear == Gear::straight_bevel;
+  const bool herringbone = gear == Gear::bevel_herringbone, spiral = gear == Gear::spiral_bevel,
+             cylindrical = is_cylindrical(gear), bevel = herringbone || spiral || gear == Gear::straight_bevel;
   switch (question.what) {
     case Quantity::teeth:
     case Quantity::module:
     case Quantity::pressure_angle: return true;
     case Quantity::mate_teeth: return bevel;
-    case Quantity::spiral: return herringbone;
+    case Quantity::spiral: return herringbone || spiral;
+    case Quantity::cutter_radius: return spiral;
     case Quantity::face_width: return bevel || cylindrical;
     case Quantity::profile_shift: return cylindrical;
     case Quantity::offset: return gear == Gear::offset;
@@ -166,17 +198,23 @@ std::optional<double> proposed(Quantity quantity, const Wishes& wishes) {
     case Quantity::bore: return 0.0;
     case Quantity::shaper_teeth: return std::clamp(std::round(2.6 * std::sqrt(teeth)), 16.0, 100.0);
     case Quantity::pressure_angle: return 20.0;
-    case Quantity::helix: return wishes.gear == Gear::double_helical ? helix_with_room(wishes) : 0.0;
+    case Quantity::helix:
+      return wishes.gear == Gear::double_helical               ? helix_with_room(wishes)
+             : wishes.gear == Gear::cylindrical_double_helical ? kDoubleHelix
+                                                               : 0.0;
     case Quantity::offset: return rounded(0.05 * m * teeth, 0.5);
     case Quantity::tip_radius: return wishes.route == Route::shaped ? 0.0 : proposed_tip(wishes);
     case Quantity::inner:
     case Quantity::outer: return proposed_end(quantity, wishes);
-    case Quantity::spiral: return 30.0;
+    case Quantity::spiral: return wishes.gear == Gear::spiral_bevel ? 35.0 : 30.0;
+    case Quantity::cutter_radius: return proposed_cutter(wishes);
     case Quantity::profile_shift: return least_shift(wishes);
     case Quantity::face_width: {
       if (wishes.gear == Gear::cylindrical) return std::max(1.0, rounded(8 * m, 0.5));
+      if (wishes.gear == Gear::cylindrical_double_helical) return std::max(2.0, rounded(14 * m, 0.5));
       const double delta = std::atan2(teeth, wishes.at(Quantity::mate_teeth));
-      return rounded(0.29 * 0.5 * m * teeth / std::sin(delta), 0.5);
+      const double width = 0.29 * 0.5 * m * teeth / std::sin(delta);
+      return rounded(wishes.gear == Gear::spiral_bevel ? std::min(width, 10 * m) : width, 0.5);
     }
   }
   return std::nullopt;

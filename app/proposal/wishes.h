@@ -21,9 +21,10 @@ enum class Gear : std::uint8_t {
   offset,
   bevel_herringbone,
   cylindrical,
+  cylindrical_double_helical,  ///< two rings of opposite hands, and a groove
   straight_bevel,
-  spiral_bevel,  ///< its settings stand in a file
-  flank_grid,    ///< so do its points
+  spiral_bevel,  ///< its settings stand in a file, or follow from a drawing
+  flank_grid,    ///< its points stand in a file
 };
 enum class Route : std::uint8_t {
   ball,    ///< ball mills alone
@@ -31,6 +32,10 @@ enum class Route : std::uint8_t {
   shaped,  ///< gear shaper
   finger,  ///< finger mill
 };
+
+[[nodiscard]] constexpr bool is_cylindrical(std::optional<Gear> gear) {
+  return gear == Gear::cylindrical || gear == Gear::cylindrical_double_helical;
+}
 
 /// As the options say them.
 [[nodiscard]] std::span<const std::string_view> gear_words();
@@ -56,10 +61,11 @@ enum class Quantity : std::uint8_t {
   spiral,
   face_width,
   profile_shift,
+  cutter_radius,
   fillet_radius,
   bore,
 };
-inline constexpr std::size_t kQuantities = 15;
+inline constexpr std::size_t kQuantities = 16;
 
 /// mm and deg, as a job says them.
 struct Wishes {
@@ -67,6 +73,7 @@ struct Wishes {
   std::optional<Route> route;
   std::string machine;  ///< as a job names it
   std::array<std::optional<double>, kQuantities> numbers{};
+  int hand = 0;  ///< of a spiral bevel gear by a drawing: 1 right, -1 left
 
   // Gears whose numbers stand in a file.
   std::shared_ptr<const cylindrical::CylindricalParameters> cylinder = {};
@@ -74,6 +81,8 @@ struct Wishes {
   std::shared_ptr<const flank_grid::FlankGridParameters> grid = {};
   std::string points_file = {};                                    ///< of the grid, as the job names it
   [[nodiscard]] bool whole() const { return cylinder || spiral; }  ///< nothing of the gear is asked for
+  /// Its settings follow from a drawing.
+  [[nodiscard]] bool drawn() const { return gear == Gear::spiral_bevel && hand != 0; }
 
   [[nodiscard]] std::optional<double>& operator[](Quantity q) { return numbers[static_cast<std::size_t>(q)]; }
   [[nodiscard]] std::optional<double> operator[](Quantity q) const { return numbers[static_cast<std::size_t>(q)]; }

@@ -16,7 +16,7 @@ namespace toothpath::line {
 namespace {
 
 constexpr int kMostLeaning = 4;    // strips that are tried of flanks that are no upright ones
-constexpr int kMoreStrips = 2;     // than the bend asks for: poses stand, and the profile bends unevenly
+constexpr int kMoreStrips = 4;     // than the bend asks for: poses stand, and the profile bends unevenly
 constexpr double kDip = 0.5;       // share of the clearance of rapids
 constexpr double kBodySag = 0.01;  // mm: how far bodies may stand out of the tool where only rapids ask for them
 

@@ -144,8 +144,9 @@ TEST_F(Completion, OfZshProposesTheSame) {
     EXPECT_EQ(in_zsh(fmt::format("toothpath {} --", fmt::join(command.words, " "))), long_ones(options));
   }
   EXPECT_EQ(in_zsh("toothpath --color a"), (Words{"always", "auto"}));
-  EXPECT_EQ(in_zsh("toothpath new --gear "), (Words{"face", "double_helical", "offset", "bevel_herringbone",
-                                                    "cylindrical", "straight_bevel", "spiral_bevel", "flank_grid"}));
+  EXPECT_EQ(in_zsh("toothpath new --gear "),
+            (Words{"face", "double_helical", "offset", "bevel_herringbone", "cylindrical", "cylindrical_double_helical",
+                   "straight_bevel", "spiral_bevel", "flank_grid"}));
   EXPECT_EQ(in_zsh("toothpath new --cut "), (Words{"ball", "line", "shaped", "finger"}));
   EXPECT_EQ(in_zsh("toothpath new --machine xyz"), (Words{"xyzac_large", "xyzac_trt", "xyzbc_trt"}));
   EXPECT_EQ(in_zsh("toothpath machine show xyz"), (Words{"xyzac_large", "xyzac_trt", "xyzbc_trt"}));
@@ -165,8 +166,8 @@ TEST_F(Completion, ProposesWhatAValueMayBe) {
       {"toothpath contact --mate ", {"job.toml", "folder"}},
       {"toothpath run --color al", {"always"}},
       {"toothpath new --gear ",
-       {"face", "double_helical", "offset", "bevel_herringbone", "cylindrical", "straight_bevel", "spiral_bevel",
-        "flank_grid"}},
+       {"face", "double_helical", "offset", "bevel_herringbone", "cylindrical", "cylindrical_double_helical",
+        "straight_bevel", "spiral_bevel", "flank_grid"}},
       {"toothpath new --gear bev", {"bevel_herringbone"}},
       {"toothpath new --cut ", {"ball", "line", "shaped", "finger"}},
       {"toothpath new --machine xyz", {"xyzac_large", "xyzac_trt", "xyzbc_trt"}},
