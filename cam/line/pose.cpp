@@ -91,13 +91,24 @@ std::optional<tooth_space::PatchPoint> FlankTask::at_u(double s, double u) const
 
 namespace {
 
-/// Of the axis that the flank itself wants half way down it.
-bool wants_upright(const FlankTask& t) {
-  const auto place = t.at_depth(0.5 * (t.s_from + t.s_to), 0.5 * t.depth);
+/// Does the flank itself want an axis there that is tilted farther than that from the height of the teeth?
+bool wants_beyond(const FlankTask& t, double s, double depth, double tilt_rad) {
+  const auto place = t.at_depth(s, depth);
   if (!place) return false;
   const auto frame = t.frame(place->on);
   const auto psi = lean(shape_at(frame, place->on), 0.0);
-  return psi && axis_direction<double>(frame, *psi, 0).dot(t.up(place->on.p)) < std::cos(kAlongTheTooth);
+  return psi && axis_direction<double>(frame, *psi, 0).dot(t.up(place->on.p)) < std::cos(tilt_rad);
+}
+
+/// Along the tooth, or on a cylinder or a cone beyond what is planned: one way for the whole flank.
+bool wants_upright(const FlankTask& t) {
+  const double middle = 0.5 * (t.s_from + t.s_to);
+  if (wants_beyond(t, middle, 0.5 * t.depth, kAlongTheTooth)) return true;
+  if (t.chart().sine == 0) return false;
+  for (const double s : {t.s_from, middle, t.s_to})
+    for (const double share : {0.1, 0.5, 0.9})
+      if (wants_beyond(t, s, share * t.depth, kMostTilt)) return true;
+  return false;
 }
 
 /// From the tip down to every depth, in even steps: the integral of sqrt(bend of the profile) over its length. A strip
@@ -408,10 +419,12 @@ void LineFit::settle(StationPose& pose, const Anchor& anchor, double bias) const
   }
 }
 
-/// Of an axis that touches at t_m, eps = 0: along the wanted direction, upright where that lies along the tooth.
+/// Of an axis that touches at t_m, eps = 0: along the wanted direction, upright where that lies along the tooth and on
+/// upright flanks.
 std::optional<double> LineFit::wanted_lean(const Anchor& at, double t_m) const {
   const auto psi = lean(shape_at(at.frame, at.place.on), law_.rho(t_m) + flank_.allowance_mm);
   if (!psi) return {};
+  if (flank_.upright) return 0.0;
   const Vec3 a = axis_direction<double>(at.frame, *psi, std::asin(law_.slope(t_m)));
   return a.dot(flank_.up(at.P)) < std::cos(kAlongTheTooth) ? 0 : *psi;
 }

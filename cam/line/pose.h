@@ -42,7 +42,8 @@ struct FlankTask {
   double u_end = 0;             ///< at the fillet line
   double mm_per_u = 0;          ///< towards the tip, at the fillet line in the middle of the ring
   double depth = 0;             ///< of the fillet line there
-  /// Is the flank straight along the tooth, or nearly? Its strips are cut by an upright tool (`kAlongTheTooth`).
+  /// Is the flank straight along the tooth, or nearly (`kAlongTheTooth`), or does an axis along its zero lean too far
+  /// somewhere on a cylinder or a cone (`kMostTilt`)? Its strips are cut by an upright tool.
   bool upright = false;
   /// Of an upright flank, and of teeth on a cone, depths are counted in shares of the fillet line's: strips taper as
   /// the teeth do. Else the anchors of the lowest would leave the flank where the teeth are low.

@@ -550,5 +550,18 @@ TEST(LinePassesOnACone, LowStripsReachTheSmallEndAndTurnInShortBlocks) {
   }
 }
 
+/// The zero direction of the pinion's flanks leans beyond 60 deg towards the large end: all of their strips are cut by
+/// an upright tool.
+TEST(LinePassesOnACone, FlanksThatAskForTooMuchTiltAreCutUpright) {
+  const auto part = part_of(spiral_bevel::SpiralBevelGear::make(nasa_pinion()).value());
+  for (const int side : {1, -1}) {
+    const auto task = line::flank_task(*part, 0, side).value();
+    EXPECT_TRUE(task.upright) << side;
+    const auto pass = line::plan_pass(line::LineFit(task, tapered(0.75, 4), line::strips_of(task, 10)[4]), {}, 100);
+    ASSERT_TRUE(pass) << pass.error().message;
+    EXPECT_LT(pass->misfit_mm, 0.006);
+  }
+}
+
 }  // namespace
 }  // namespace toothpath::test
