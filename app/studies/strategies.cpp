@@ -68,6 +68,7 @@ class Study {
     const std::string name = "tilted ball";
     std::string refusals;
     double seconds = 0;
+    if (!job_.face_gear()) return add(name, with_ball(job_, flanks_, kLeans));
     for (const PrescribedLean& lean : kLeans) {
       if (!errors_.empty()) return;
       auto trial = tried(name, with_ball(job_, flanks_, &lean));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "app/process/gear_of_job.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 
@@ -44,7 +43,6 @@ MillingOperation ball_for(const MillingOperation& line) {
 }  // namespace
 
 Result<LineMilledFlanks> line_milled_flanks(const job::Job& job) {
-  if (!job.face_gear()) return process::needs_face_gear(job);
   if (job.operations.empty())
     return fail_at(job.where("operation"), "the job lacks an [[operation]]: there is nothing to compare");
   const auto finisher = path::finisher_of(job.operations, path::Region::flank);
@@ -86,6 +84,10 @@ Result<job::Job> with_ball(job::Job job, const LineMilledFlanks& flanks, const P
     if (o.scallop_mm >= tool.radius_mm())
       return fail_at(place_of(job, n), "a scallop of {:g} mm is not below {:g} mm, the radius of tool {}", o.scallop_mm,
                      tool.radius_mm(), tool.number);
+    if (lean && !job.face_gear())
+      return fail_at(place_of(job, n),
+                     "a lean that is prescribed is a tool_axis, which belongs to face gears; this gear is a {}",
+                     job.gear_type());
     if (lean) prescribe(job, *lean, o);
   }
   return job;

@@ -17,8 +17,7 @@ struct LineMilledFlanks {
   std::size_t finisher = 0;             ///< leaves the finished flank
   std::vector<std::size_t> operations;  ///< all that mill the flank with the side of a mill, in order
 };
-/// Refused, each with its place: a gear that is no face gear; a job without operations; flanks that something else
-/// than a line_milling finishes.
+/// Refused, each with its place: a job without operations; flanks that something else than a line_milling finishes.
 [[nodiscard]] Result<LineMilledFlanks> line_milled_flanks(const job::Job& job);
 
 /// A lean that is prescribed on both flanks: outwards along the teeth, and aside, away from the flank that is cut.
@@ -33,7 +32,8 @@ struct PrescribedLean {
 
 /// The job with every line operation on the flanks by the ball end of its tool: the finishing one at a scallop of its
 /// `left`, the others as semi-finishing with their allowance and cusps as above. Tool, speed, feed and chord tolerance
-/// stay. Refused (with its place): a tool without a ball end, a scallop that is not below its radius.
+/// stay. Refused (with its place): a tool without a ball end, a scallop that is not below its radius, a lean of another
+/// gear than a face gear.
 /// @param lean  of the tool axis; none: the planner chooses
 [[nodiscard]] Result<job::Job> with_ball(job::Job job, const LineMilledFlanks& flanks, const PrescribedLean* lean);
 

@@ -155,6 +155,27 @@ TEST(StudyStrategies, LineStripsBallAndTiltedBall) {
     EXPECT_EQ(line.at("gouge_um").at(key), run.at("gouge_um").at(key)) << key;
 }
 
+/// Gears of every type are compared; a lean that is prescribed is one of face gears.
+TEST(StudyStrategies, TakesOtherGearsThanFaceGears) {
+  job::Job job = job::read_job_file(kSamples + "/spiral_bevel.toml").value();
+  EXPECT_NE(studies::line_milled_flanks(job).error().message.find("finishes the flanks and is a finishing"),
+            std::string::npos);
+  job.operations.back().type = path::OperationType::line_milling;
+  job.operations.back().left_mm = 0.005;
+  const auto flanks = studies::line_milled_flanks(job);
+  ASSERT_TRUE(flanks) << flanks.error().message;
+  EXPECT_EQ(studies::with_strips(job, *flanks, 9).operations.back().strips, 9);
+  const auto ball = studies::with_ball(job, *flanks, nullptr);
+  ASSERT_TRUE(ball) << ball.error().message;
+  EXPECT_EQ(ball->operations.back().type, path::OperationType::finishing);
+  EXPECT_DOUBLE_EQ(ball->operations.back().scallop_mm, 0.005);
+  const studies::PrescribedLean lean{0.1, 0};
+  const auto tilted = studies::with_ball(job, *flanks, &lean);
+  ASSERT_FALSE(tilted);
+  EXPECT_NE(tilted.error().message.find("belongs to face gears; this gear is a spiral_bevel_gear"), std::string::npos)
+      << tilted.error().message;
+}
+
 /// The ring is too narrow for the four stations of a line; balls do not mind.
 TEST(StudyStrategies, WhatIsRefusedSaysWhyAndStopsNothing) {
   const TestDir dir;
