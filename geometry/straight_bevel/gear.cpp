@@ -94,19 +94,41 @@ class Inspection : public Refusals {
 
   void rounding(const CrownKernel<double>& w) {
     if (w.chi >= 0 && w.b_F > 0) return;
-    const double most = largest(gear_.dedendum_mm / (1 - std::sin(gear_.pressure_angle_rad)), [&](double radius) {
+    const auto with = [&](double StraightBevelParameters::*number, double x) {
       StraightBevelParameters other = gear_;
-      other.fillet_radius_mm = radius;
+      other.*number = x;
       const CrownKernel<double> k(other);
       return k.chi >= 0 && k.b_F > 0;
+    };
+    const double most = largest(gear_.dedendum_mm / (1 - std::sin(gear_.pressure_angle_rad)), [&](double radius) {
+      return with(&StraightBevelParameters::fillet_radius_mm, radius);
     });
     if (most > 0)
-      refuse("fillet_radius",
-             "fillet_radius = {:.4f} mm does not fit on the crown gear's tooth tip; {:.4f} or less would do",
-             gear_.fillet_radius_mm, told(most));
-    else
-      refuse("dedendum", "dedendum = {:.4f} mm: the tip of the crown gear's tooth has no width for a rounding",
-             gear_.dedendum_mm);
+      return refuse("fillet_radius",
+                    "fillet_radius = {:.4f} mm does not fit on the crown gear's tooth tip; {:.4f} or less would do",
+                    gear_.fillet_radius_mm, told(most));
+    // Nothing is left of the tip: a thick gear tooth makes a thin one of the crown gear, and a deep one ends in a
+    // point.
+    StraightBevelParameters sharp = gear_;
+    sharp.fillet_radius_mm = 0;
+    const double least_shift = -0.5, shift = least_shift + largest(gear_.thickness_shift - least_shift, [&](double x) {
+                                               return with(&StraightBevelParameters::thickness_shift, least_shift + x);
+                                             });
+    const double dedendum =
+        largest(gear_.dedendum_mm, [&](double x) { return with(&StraightBevelParameters::dedendum_mm, x); });
+    const bool thick = with(&StraightBevelParameters::thickness_shift, std::min(0.0, gear_.thickness_shift));
+    std::string way;
+    if (shift > least_shift) way = fmt::format("a thickness_shift of {:.4f} or less", std::floor(1e4 * shift) / 1e4);
+    if (dedendum > 0)
+      way += fmt::format("{}a dedendum of {:.4f} mm or less", way.empty() ? "" : ", or ", told(dedendum));
+    refuse(
+        thick ? "thickness_shift" : "dedendum",
+        "{}: the tip of the crown gear's tooth is {:.4f} mm wide at the large end and has no width for a rounding of "
+        "{:.4f} mm; {}",
+        thick ? fmt::format("thickness_shift = {:.4f}", gear_.thickness_shift)
+              : fmt::format("dedendum = {:.4f} mm", gear_.dedendum_mm),
+        2 * w.R_e * CrownKernel<double>(sharp).chi, gear_.fillet_radius_mm,
+        way.empty() ? std::string("less pressure angle is needed") : way + " would do");
   }
 
   void undercut(const CrownKernel<double>& w) {

@@ -197,6 +197,7 @@ TEST(StraightBevel, EveryLimitIsRefusedByItsKey) {
       {"tip_angle", [](auto& g) { g.tip_angle_rad = radians(44); }},
       {"fillet_radius", [](auto& g) { g.fillet_radius_mm = 1.6; }},
       {"thickness_shift", [](auto& g) { g.thickness_shift = 0.9; }},
+      {"thickness_shift", [](auto& g) { g.thickness_shift = 0.5; }},
       {"backlash", [](auto& g) { g.backlash_mm = -0.1; }},
       {"bore_diameter", [](auto& g) { g.bore_diameter_mm = 60; }},
       {"hub_length", [](auto& g) { g.hub_length_mm = -1; }},
@@ -210,6 +211,25 @@ TEST(StraightBevel, EveryLimitIsRefusedByItsKey) {
     ASSERT_TRUE(gear.refused()) << key;
     EXPECT_EQ(gear.refused()->front().key, key) << gear.refused()->front().diagnostic.message;
   }
+}
+
+/// A tooth that leaves the crown gear's no tip is refused with the thickness that leaves one.
+TEST(StraightBevel, AThicknessThatLeavesNoTipIsToldWithOneThatDoes) {
+  auto g = khk_pinion();
+  g.thickness_shift = 0.5;
+  const std::string message = StraightBevelGear::make(g).refused()->front().diagnostic.message,
+                    before = "a thickness_shift of ";
+  ASSERT_NE(message.find(before), std::string::npos) << message;
+  const double most = std::stod(message.substr(message.find(before) + before.size()));
+  const auto rounded = [&](double shift) {
+    g.thickness_shift = shift;
+    const auto made = StraightBevelGear::make(g);
+    if (!made.refused()) return true;
+    const Refusal& refusal = made.refused()->front();
+    return refusal.key != "fillet_radius" && refusal.diagnostic.message.find("rounding") == std::string::npos;
+  };
+  EXPECT_TRUE(rounded(most));
+  EXPECT_FALSE(rounded(most + 2e-4));
 }
 
 }  // namespace
