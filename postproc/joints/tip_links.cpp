@@ -61,18 +61,24 @@ void ToothBuilder::start_at_zero() {
   tcp_ = true;
 }
 
+/// Links with TCP go over the part: a tool that comes in from the side does not.
+bool ToothBuilder::lies_down(const Vec3& axis) {
+  if (axis.z() >= kLeastUp) return false;
+  error_ = fail(
+      "operation {} record {} (tooth {}): the tool axis rises by {:.3f} only, seen from the table, and links with TCP "
+      "need {:.1f} at least; where the tool comes in from the side write tcp = \"none\" in a copy of the machine file "
+      "beside the job, and its name under [machine]: the program then carries the axes of the machine, and its links "
+      "need no such axis",
+      operation_->operation, record_, tooth_, axis.z(), kLeastUp);
+  return true;
+}
+
 void ToothBuilder::tip_link_to(const machines::TablePose& target, const RotaryPair& rotaries) {
   if (error_) return;
   AxisBlock goal = last_;
   words_.set_tip(goal, target.tip_mm, rotaries);
   if (goal.words == last_.words) return;
-  if (target.axis.z() < kLeastUp) {
-    error_ = fail(
-        "operation {} record {} (tooth {}): the tool axis rises by {:.3f} only, seen from the table; links with TCP "
-        "need {:.1f}; with tcp = \"none\" in the machine file the program carries the joints and needs none",
-        operation_->operation, record_, tooth_, target.axis.z(), kLeastUp);
-    return;
-  }
+  if (lies_down(target.axis)) return;
   rise_along_tool();
   if (error_) return;
   if (goal.words[3] != last_.words[3] || goal.words[4] != last_.words[4]) push_turn(rotaries);
@@ -92,13 +98,7 @@ void ToothBuilder::rise_along_tool() {
   const Vec3 tip = words_.tip(last_);
   if (tip.z() >= height - 1e-9) return;
   const Vec3 axis = chain_.forward(words_.joints(last_), words_.length()).axis;
-  if (axis.z() < kLeastUp) {
-    error_ = fail(
-        "operation {} record {} (tooth {}): the tool axis rises by {:.3f} only, seen from the table; links with TCP "
-        "need {:.1f}; with tcp = \"none\" in the machine file the program carries the joints and needs none",
-        operation_->operation, record_, tooth_, axis.z(), kLeastUp);
-    return;
-  }
+  if (lies_down(axis)) return;
   Vec3 above = tip + axis * ((height - tip.z()) / axis.z());
   above.z() = height;
   push_tip(above);

@@ -99,6 +99,7 @@ class ToothBuilder {
   // postproc/joints/tip_links.cpp: with TCP.
   void start_at_zero();
   void tip_link_to(const machines::TablePose& target, const RotaryPair& rotaries);
+  [[nodiscard]] bool lies_down(const Vec3& axis);
   void rise_along_tool();
   void leave_to_top();
   void push_tip(const Vec3& tip);

@@ -306,5 +306,60 @@ TEST(PoleRun, RefusedAxesAreLocatedInTheJob) {
   EXPECT_NE(run.err.find("28.000 deg aside"), std::string::npos) << run.err;
 }
 
+/// A cylinder is cut from the side: links with TCP go over the part and cannot be made. The refusal says what to write,
+/// and what it says does.
+TEST(LinksWithTcp, AToolFromTheSideAsksForTheAxesOfTheMachine) {
+  const TestDir dir;
+  const std::string data = std::string(TOOTHPATH_SOURCE_DIR) + "/machines/data/fanuc_ac.toml", job = dir / "job.toml";
+  const std::string text = R"(schema = 1
+name = "from_the_side"
+[gear]
+type = "cylindrical_gear"
+teeth = 20
+module = 2.0
+module_plane = "normal"
+pressure_angle = 20.0
+[[gear.zone]]
+helix_angle = 0.0
+from = -1.0
+to = 1.0
+[machine]
+file = "fanuc_ac"
+accept_assumed = true
+[setup]
+origin = [0.0, 0.0, 200.0]
+axis = "up"
+work_offset = "G54"
+work_offset_at = [0.0, 0.0, 200.0]
+[[tool]]
+number = 1
+type = "ball_end_mill"
+diameter = 1.2
+flute_length = 8.0
+shank_diameter = 1.1
+length = 100.0
+holder = [[10.0, 10.0, 30.0], [32.0, 32.0, 30.0]]
+stick_out = 28.0
+[[operation]]
+type = "finishing"
+tool = 1
+speed = 14000
+feed = 500.0
+scallop = 0.08
+chord_tolerance = 0.002
+[verify]
+gouge_tolerance = 0.005
+)";
+  write_file(job, text);
+  const Finished refused = run_program({"run", job, "--out", dir / "out"});
+  EXPECT_NE(refused.exit_code, 0);
+  EXPECT_NE(refused.err.find("write tcp = \"none\" in a copy of the machine file beside the job"), std::string::npos)
+      << refused.err;
+  write_file(dir / "fanuc_axes.toml", replaced(file_text(data), "tcp = \"angles\"", "tcp = \"none\""));
+  write_file(job, replaced(text, "\"fanuc_ac\"", "\"fanuc_axes\""));
+  const Finished made = run_program({"run", job, "--out", dir / "out", "--quiet"});
+  EXPECT_EQ(made.exit_code, 0) << made.out << made.err;
+}
+
 }  // namespace
 }  // namespace toothpath::test
