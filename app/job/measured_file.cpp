@@ -121,12 +121,20 @@ std::optional<Diagnostic> check_sizes(const std::string& file, const std::vector
   return {};
 }
 
+/// Flanks of a face gear are counted by roll angle and radius.
+GridOfGear grid_of(const face_gear::FaceGear& gear) {
+  return {gear.rings().size(), false,
+          [&gear](int rows, int columns) {
+            return inspection::inspection_grid(drawn_solid(gear), {rows, columns});
+          },
+          [](const inspection::InspectionPoint& at) { return Vec2(radius(at.p), -at.theta); },
+          [&gear](int zone) { return -gear.rings()[std::size_t(zone)].surface.shaper.theta_t; }};
+}
+
 }  // namespace
 
 Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file, const face_gear::FaceGear& gear) {
-  return parse_measured(text, file, {gear.rings().size(), false, [&](int rows, int columns) {
-                                       return inspection::inspection_grid(drawn_solid(gear), {rows, columns});
-                                     }});
+  return parse_measured(text, file, grid_of(gear));
 }
 
 Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file, const GridOfGear& gear) {
@@ -183,33 +191,45 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
   return measured;
 }
 
-Result<FittedCorrection> fit_correction(const face_gear::FaceGear& gear,
-                                        const std::vector<MeasuredFlanks>& measurements) {
-  const auto& points = measurements.front().points;
-  std::vector<double> sum(points.size(), 0.0);
-  for (const auto& m : measurements) {
-    if (m.points.size() != points.size())
-      return at(m.file, 1, 0, "{} points, but {} has {}: all measurements need the same grid", m.points.size(),
-                measurements.front().file, points.size());
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += m.deviation_mm[k];
-  }
-  FittedCorrection result;
-  for (std::size_t zone = 0; zone < gear.rings().size(); ++zone) {
-    modification::RingCorrection ring;
+namespace {
+
+/// Each grid was taken on a gear cut with the corrections of all before it, so their deviations add up.
+Result<std::vector<MeasuredField>> fit_grids(const std::vector<MeasuredFlanks>& grids, const GridOfGear& gear) {
+  const auto& points = grids.front().points;
+  for (const auto& grid : grids)
+    if (grid.points.size() != points.size())
+      return at(grid.file, 1, 0, "{} points, but {} has {}: all measurements need the same grid", grid.points.size(),
+                grids.front().file, points.size());
+  std::vector<MeasuredField> out;
+  for (int zone = 0; zone < static_cast<int>(gear.zones); ++zone)
     for (const int side : {1, -1}) {
+      // The field counts down the profile: its roll parameter is the height with the other sign.
       std::vector<modification::FlankDeviation> flank;
-      for (std::size_t k = 0; k < points.size(); ++k)
-        if (points[k].zone == int(zone) && points[k].side == side)
-          flank.push_back(
-              {points[k].row, points[k].column, points[k].theta, std::hypot(points[k].p.x(), points[k].p.y()), sum[k]});
-      auto fit = modification::FlankCorrection::fit(flank, gear.rings()[zone].surface.shaper.theta_t);
-      if (!fit) return at(measurements.front().file, 1, 0, "zone {}, flank {}: {}", zone, side, fit.error().message);
-      result.flanks.push_back({int(zone), side, measurements.back().file, 1, fit->residual()});
-      (side > 0 ? ring.plus : ring.minus) = std::move(*fit);
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        if (points[k].zone != zone || points[k].side != side) continue;
+        double sum = 0;
+        for (const auto& grid : grids) sum += grid.deviation_mm[k];
+        const Vec2 place = gear.place(points[k]);
+        flank.push_back({points[k].row, points[k].column, -place.y(), place.x(), sum});
+      }
+      auto fit = modification::FlankCorrection::fit(flank, -gear.foot(zone));
+      if (!fit) return at(grids.front().file, 1, 0, "zone {}, flank {:+}: {}", zone, side, fit.error().message);
+      out.push_back({zone, side, std::move(*fit)});
     }
-    result.rings.push_back(std::make_shared<modification::RingCorrection>(std::move(ring)));
+  return out;
+}
+
+}  // namespace
+
+FittedCorrection correction_of(std::vector<MeasuredField> fields, const std::string& file) {
+  FittedCorrection out;
+  for (std::size_t k = 0; k + 1 < fields.size(); k += 2) {
+    for (const std::size_t n : {k, k + 1})
+      out.flanks.push_back({fields[n].zone, fields[n].side, file, 1, fields[n].field.residual()});
+    out.rings.push_back(std::make_shared<modification::RingCorrection>(
+        modification::RingCorrection{std::move(fields[k].field), std::move(fields[k + 1].field)}));
   }
-  return result;
+  return out;
 }
 
 namespace {
@@ -250,9 +270,9 @@ Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal, const Mea
     fits.push_back(std::move(*fit));
   }
   if (!grids.empty()) {
-    auto fit = fit_correction(nominal, grids);
+    auto fit = fit_grids(grids, grid_of(nominal));
     if (!fit) return fit.error();
-    add(corrected.fit, std::move(*fit));
+    add(corrected.fit, correction_of(std::move(*fit), grids.back().file));
     corrected.grid = grids.front().points;
   } else {
     auto grid = inspection::inspection_grid(drawn_solid(nominal));
@@ -281,9 +301,6 @@ Result<std::vector<MeasuredFlanks>> read_measured_grids(const MeasuredInput& mea
       return at(file, 1, 0, "an inspection grid holds deviations: a ball's diameter is for files of points");
     auto grid = parse_measured(*text, file, gear);
     if (!grid) return grid.error();
-    if (!grids.empty() && grid->points.size() != grids.front().points.size())
-      return at(file, 1, 0, "{} points, but {} has {}: all measurements need the same grid", grid->points.size(),
-                grids.front().file, grids.front().points.size());
     grids.push_back(std::move(*grid));
   }
   return grids;
@@ -294,24 +311,7 @@ Result<std::vector<MeasuredFlanks>> read_measured_grids(const MeasuredInput& mea
 Result<std::vector<MeasuredField>> fit_measured(const MeasuredInput& measured, const GridOfGear& gear) {
   const auto grids = read_measured_grids(measured, gear);
   if (!grids) return grids.error();
-  const auto& points = grids->front().points;
-  std::vector<MeasuredField> out;
-  for (int zone = 0; zone < static_cast<int>(gear.zones); ++zone)
-    for (const int side : {1, -1}) {
-      // The field counts down the profile: its roll parameter is the height with the other sign.
-      std::vector<modification::FlankDeviation> flank;
-      for (std::size_t k = 0; k < points.size(); ++k) {
-        if (points[k].zone != zone || points[k].side != side) continue;
-        double sum = 0;
-        for (const auto& grid : *grids) sum += grid.deviation_mm[k];
-        const Vec2 place = gear.place(points[k]);
-        flank.push_back({points[k].row, points[k].column, -place.y(), place.x(), sum});
-      }
-      auto fit = modification::FlankCorrection::fit(flank, -gear.foot);
-      if (!fit) return at(grids->front().file, 1, 0, "zone {}, side {:+}: {}", zone, side, fit.error().message);
-      out.push_back({zone, side, std::move(*fit)});
-    }
-  return out;
+  return fit_grids(*grids, gear);
 }
 
 std::string correction_json(const CorrectedGear& corrected) {

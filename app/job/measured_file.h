@@ -35,7 +35,7 @@ struct MeasuredFlanks {
 [[nodiscard]] Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file,
                                                     const face_gear::FaceGear& gear);
 
-/// The inspection grid of a gear that is no face gear, for its measured files.
+/// The inspection grid of a gear, for its measured files.
 struct GridOfGear {
   std::size_t zones = 0;
   bool walls = false;  ///< flanks are called L and U (side +1 and -1), not 1 and -1
@@ -43,7 +43,7 @@ struct GridOfGear {
   /// rows or columns than the gear type needs.
   std::function<Result<std::vector<inspection::InspectionPoint>>(int rows, int columns)> nominal;
   std::function<Vec2(const inspection::InspectionPoint&)> place{};  ///< along the face, height: any unit
-  double foot = 0;  ///< height at which flanks begin, below all points of the grid
+  std::function<double(int zone)> foot{};  ///< height at which flanks begin, below all points of the grid
 };
 /// As above, of any gear type.
 [[nodiscard]] Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file,
@@ -62,11 +62,6 @@ struct FittedCorrection {
   std::vector<std::string> warnings = {};
 };
 
-/// Fits the sum of the measurements: each was taken on a gear cut with the corrections of all before it, so their
-/// deviations add up. Refused: grids of different size.
-[[nodiscard]] Result<FittedCorrection> fit_correction(const face_gear::FaceGear& gear,
-                                                      const std::vector<MeasuredFlanks>& measurements);
-
 /// The files that a command names, in the order of the cuts.
 struct MeasuredInput {
   std::vector<std::string> files;
@@ -84,6 +79,9 @@ struct MeasuredField {
 /// by flank, in the order zone, side +1, side -1. Refused: as `parse_measured`; a file that cannot be read
 /// (`file_access`); files of points, which are put on face gears only; a ball's diameter; grids of different size.
 [[nodiscard]] Result<std::vector<MeasuredField>> fit_measured(const MeasuredInput& measured, const GridOfGear& gear);
+
+/// The offsets that answer them, a ring each. @param file  named with their flanks
+[[nodiscard]] FittedCorrection correction_of(std::vector<MeasuredField> fields, const std::string& file);
 
 /// A gear whose target answers measured files.
 struct CorrectedGear {

@@ -98,7 +98,7 @@ Result<CutWalls> walls_as_measured(const bevel_gear::BevelGear& gear, const job:
     const auto at = bevel_gear::cone_point(point.p, gear.sin_delta(), gear.cos_delta());
     return Vec2(at.ell, at.height);
   };
-  grid.foot = gear.cutter().x_B;
+  grid.foot = [&](int) { return gear.cutter().x_B; };
   auto fitted = job::fit_measured(measured, grid);
   if (!fitted) return fitted.error();
   CutWalls out{"measured", {}, {}};

@@ -99,7 +99,7 @@ job::GridOfGear ToothedProcess::measured_grid() const {
     const Vec2 share = flank ? flank->share_at(gear_.part->space(at.zone), at.p) : Vec2(NAN, NAN);
     return {share.x(), -share.y()};
   };
-  grid.foot = -1;
+  grid.foot = [](int) { return -1.0; };
   return grid;
 }
 process::ValueOrErrors<process::CutFlanks> ToothedProcess::measured(const job::MeasuredInput& measured) const {
@@ -130,24 +130,17 @@ Result<process::Correction> ToothedProcess::answer(const job::MeasuredInput& mea
   auto fitted = job::fit_measured(measured, grid);
   if (!fitted) return fitted.error();
   process::Correction out;
-  std::vector<job::FittedFlank> flanks;
-  tooth_space::Corrections corrections;
-  for (std::size_t k = 0; k + 1 < fitted->size(); k += 2) {
-    for (const job::MeasuredField& f : {(*fitted)[k], (*fitted)[k + 1]})
-      flanks.push_back({f.zone, f.side, measured.files.back(), 1, f.field.residual()});
-    corrections.push_back(std::make_shared<modification::RingCorrection>(
-        modification::RingCorrection{(*fitted)[k].field, (*fitted)[k + 1].field}));
-  }
-  auto aimed = tooth_space::modified_part(gear_.part, job_.modifications, corrections);
+  const job::FittedCorrection fit = job::correction_of(std::move(*fitted), measured.files.back());
+  auto aimed = tooth_space::modified_part(gear_.part, job_.modifications, fit.rings);
   if (auto* refusal = aimed.refused())
     return process::located(job_, "gear." + refusal->key, std::move(refusal->diagnostic));
   aimed_ = std::move(aimed).value();
-  for (const auto& f : flanks) out.rows.push_back({f.zone, f.side, f.file, f.teeth, f.residual});
+  for (const auto& f : fit.flanks) out.rows.push_back({f.zone, f.side, f.file, f.teeth, f.residual});
   const auto shown = inspection::inspection_grid(gear_.solid);
   if (!shown) return shown.error();
-  out.json = job::correction_json(measured.files, flanks, *shown, [&](const inspection::InspectionPoint& at) {
+  out.json = job::correction_json(measured.files, fit.flanks, *shown, [&](const inspection::InspectionPoint& at) {
     const Vec2 place = grid.place(at);
-    return corrections[std::size_t(at.zone)]->side(at.side).at(-place.y(), place.x()).value;
+    return fit.rings[std::size_t(at.zone)]->side(at.side).at(-place.y(), place.x()).value;
   });
   return out;
 }
