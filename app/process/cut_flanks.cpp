@@ -15,4 +15,11 @@ std::vector<CutFlanks::Flank> flanks_of(const std::vector<proof::SurfaceGrid>& s
   return flanks;
 }
 
+std::vector<std::string> notes_of(const CutFlanks& cut) {
+  std::vector<std::string> notes;
+  if (!cut.verified) notes.emplace_back("the program of the cut surface is not verified");
+  for (const auto& assumed : cut.assumed) notes.push_back("assumed: " + assumed);
+  return notes;
+}
+
 }  // namespace toothpath::process

@@ -36,6 +36,9 @@ struct CutFlanks {
   return route == "measured" ? "measured" : "as cut";
 }
 
+/// What a reader of their contact must know: a program that is not proven, values of the machine nobody measured.
+[[nodiscard]] std::vector<std::string> notes_of(const CutFlanks& cut);
+
 /// How well the fit of a measured flank meets its places.
 template <typename Residual>
 [[nodiscard]] std::string words_of_fit(int zone, int side, const Residual& residual) {

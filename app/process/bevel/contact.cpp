@@ -9,7 +9,6 @@
 #include "app/process/bevel/cut_walls.h"
 #include "app/process/bevel/loaded_contact.h"
 #include "app/process/bevel/pair_ease_off.h"
-#include "app/process/under_load/asked_besides.h"
 #include "app/process/under_load/loaded_page.h"
 #include "app/process/under_load/settings.h"
 #include "app/report/page/study_page.h"
@@ -183,12 +182,7 @@ std::string page_of(const PairAnalysis& a) {
   page.charts = charts_of(a);
   page.figures = figures_of(a);
   page.tables = {wall_table(a), change_table(a)};
-  if (a.loaded) {
-    page.introduction.push_back(under_load::loaded_introduction(*a.loaded));
-    for (const auto& note : a.loaded->notes) page.introduction.push_back(note);
-    for (auto& table : under_load::loaded_tables(*a.loaded)) page.tables.push_back(std::move(table));
-    for (auto& chart : under_load::loaded_charts(*a.loaded)) page.charts.push_back(std::move(chart));
-  }
+  if (a.loaded) under_load::add_to_page(page, *a.loaded);
   add_to_page(page, a.ease_off);
   return study_page_html(page);
 }
@@ -337,9 +331,7 @@ process::ContactFound told(const PairAnalysis& a) {
                  {"contact.html", page_of(a)}};
   if (a.loaded) {
     found.summary += under_load::loaded_summary(*a.loaded);
-    found.files.emplace_back("loaded.csv", under_load::loaded_csv(*a.loaded));
-    found.files.emplace_back("pressure.csv", under_load::pressure_csv(*a.loaded));
-    if (a.loaded->settings.root_stress) found.files.emplace_back("root_stress.csv", under_load::root_csv(*a.loaded));
+    under_load::add_files(found.files, *a.loaded);
   }
   for (const auto& note : a.notes) found.summary += "  note: " + note + "\n";
   return found;

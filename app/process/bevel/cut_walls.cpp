@@ -76,14 +76,11 @@ Result<CutWalls> walls_as_cut(const bevel_gear::BevelGear& gear, const process::
     for (const int side : {1, -1})
       if (!maps->contains({half, side}))
         return fail("the cut surface has no wall {} of half {}", letter_of(side), half);
-  CutWalls out{cut.route,
-               [maps](int half, int sigma, const bevel_gear::ConePoint& at) {
-                 return deviation_at(maps->at({half, sigma}), at);
-               },
-               {}};
-  if (!cut.verified) out.notes.emplace_back("the program of the cut surface is not verified");
-  for (const auto& assumed : cut.assumed) out.notes.push_back("assumed: " + assumed);
-  return out;
+  return CutWalls{cut.route,
+                  [maps](int half, int sigma, const bevel_gear::ConePoint& at) {
+                    return deviation_at(maps->at({half, sigma}), at);
+                  },
+                  process::notes_of(cut)};
 }
 
 Result<CutWalls> walls_as_measured(const bevel_gear::BevelGear& gear, const job::MeasuredInput& measured) {

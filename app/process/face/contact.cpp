@@ -3,7 +3,7 @@
 #include "app/base/units.h"
 #include "app/process/face/searched_pair.h"
 #include "app/process/rolled/figures.h"
-#include "app/process/under_load/asked_besides.h"
+#include "app/process/under_load/loaded_page.h"
 #include "app/process/under_load/settings.h"
 
 namespace toothpath::face {
@@ -71,8 +71,7 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   if (auto* errors = analysed.refused()) return std::move(*errors);
   rolled::RolledPair& analysis = analysed.value();
   if (cut != nullptr) {
-    if (!cut->verified) analysis.notes.push_back("the program of the cut surface is not verified");
-    for (const auto& assumed : cut->assumed) analysis.notes.push_back("assumed: " + assumed);
+    for (auto& note : process::notes_of(*cut)) analysis.notes.push_back(std::move(note));
     if (measured) analysis.notes.insert(analysis.notes.end(), measured->warnings.begin(), measured->warnings.end());
   }
   if (!asked.ccx_dir.empty() && !analysis.loaded)
@@ -87,10 +86,7 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   found.summary = rolled::contact_summary(analysis);
   found.files = rolled::contact_files(analysis, about(analysis));
   if (analysis.loaded) {
-    found.files.emplace_back("loaded.csv", under_load::loaded_csv(*analysis.loaded));
-    found.files.emplace_back("pressure.csv", under_load::pressure_csv(*analysis.loaded));
-    if (analysis.loaded->settings.root_stress)
-      found.files.emplace_back("root_stress.csv", under_load::root_csv(*analysis.loaded));
+    under_load::add_files(found.files, *analysis.loaded);
     if (!asked.ccx_dir.empty()) {
       auto decks = loaded_decks(job, gear, *analysis.loaded);
       if (auto* errors = decks.refused()) return std::move(*errors);

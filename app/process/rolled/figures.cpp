@@ -193,12 +193,7 @@ std::string contact_page(const RolledPair& a, const std::string& about) {
       page.figures.push_back(std::move(figure));
   page.tables = {contact_table(a)};
   ease_off::add_to_page(page, a.misaligned);
-  if (a.loaded) {
-    page.introduction.push_back(under_load::loaded_introduction(*a.loaded));
-    for (const auto& note : a.loaded->notes) page.introduction.push_back(note);
-    for (auto& table : under_load::loaded_tables(*a.loaded)) page.tables.push_back(std::move(table));
-    for (auto& chart : under_load::loaded_charts(*a.loaded)) page.charts.push_back(std::move(chart));
-  }
+  if (a.loaded) under_load::add_to_page(page, *a.loaded);
   return study_page_html(page);
 }
 

@@ -192,8 +192,7 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const JobGear& job, cons
   if (!done) return std::vector{done.error()};
   if (cut) {
     a.route = cut->route;
-    if (!cut->verified) a.notes.emplace_back("the program of the cut surface is not verified");
-    for (const auto& assumed : cut->assumed) a.notes.push_back("assumed: " + assumed);
+    a.notes = process::notes_of(*cut);
     if (cut->route == "measured") a.notes.insert(a.notes.end(), cut->warnings.begin(), cut->warnings.end());
   }
   auto off = clock.run("misalignments", [&] { return misaligned(job, roles, shafts, a, rolls); });

@@ -97,14 +97,6 @@ std::string loaded_summary(const LoadedContact& found) {
   return out;
 }
 
-std::string loaded_introduction(const LoadedContact& found) {
-  return fmt::format(
-      "Under load both members are elastic: {:g} N m on the {}, the pinion {} along its axis. All teeth and {} share "
-      "it; "
-      "the first touch of the unloaded flanks is the zero of approach and transmission error.",
-      found.torque_gear_Nm, found.words.gear, found.floating ? "floats" : "is held", found.words.rings);
-}
-
 namespace {
 
 page::PageTable loaded_table(const LoadedContact& found) {
@@ -193,6 +185,23 @@ std::vector<svg::LineChart> loaded_charts(const LoadedContact& found) {
     charts.push_back(std::move(c));
   }
   return charts;
+}
+
+void add_to_page(page::StudyPage& page, const LoadedContact& found) {
+  page.introduction.push_back(fmt::format(
+      "Under load both members are elastic: {:g} N m on the {}, the pinion {} along its axis. All teeth and {} share "
+      "it; "
+      "the first touch of the unloaded flanks is the zero of approach and transmission error.",
+      found.torque_gear_Nm, found.words.gear, found.floating ? "floats" : "is held", found.words.rings));
+  for (const auto& note : found.notes) page.introduction.push_back(note);
+  for (auto& table : loaded_tables(found)) page.tables.push_back(std::move(table));
+  for (auto& chart : loaded_charts(found)) page.charts.push_back(std::move(chart));
+}
+
+void add_files(process::NamedFiles& files, const LoadedContact& found) {
+  files.emplace_back("loaded.csv", loaded_csv(found));
+  files.emplace_back("pressure.csv", pressure_csv(found));
+  if (found.settings.root_stress) files.emplace_back("root_stress.csv", root_csv(found));
 }
 
 }  // namespace toothpath::under_load
