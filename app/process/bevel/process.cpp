@@ -125,7 +125,7 @@ class FingerMilling final : public process::GearMilling {
 class BevelProcess : public milled::ToothedProcess {
  public:
   BevelProcess(const job::Job& job, std::shared_ptr<const bevel_gear::BevelPart> part)
-      : ToothedProcess(job, toothed(job, *part, part)), bevel_(part->gear()) {}
+      : ToothedProcess(job, toothed(job, part)), part_(std::move(part)), bevel_(part_->gear()) {}
 
   [[nodiscard]] Result<process::Correction> correct(const job::MeasuredInput&, app::StageClock&) override {
     return fail_at(
@@ -135,7 +135,7 @@ class BevelProcess : public milled::ToothedProcess {
         job().gear_type());
   }
   [[nodiscard]] std::unique_ptr<inspection::TouchedPart> touched() const override {
-    return std::make_unique<inspection::TouchedBevelGear>(bevel_);
+    return std::make_unique<inspection::TouchedBevelGear>(part_);
   }
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
     if (asked.pinion_teeth.has_value())
@@ -154,14 +154,13 @@ class BevelProcess : public milled::ToothedProcess {
   [[nodiscard]] const bevel_gear::BevelGear& bevel() const { return bevel_; }
 
  private:
-  static milled::ToothedGear toothed(const job::Job& job, const bevel_gear::BevelPart& part,
-                                     std::shared_ptr<const bevel_gear::BevelPart> owner) {
-    const bevel_gear::BevelGear& gear = part.gear();
+  static milled::ToothedGear toothed(const job::Job& job, const std::shared_ptr<const bevel_gear::BevelPart>& part) {
+    const bevel_gear::BevelGear& gear = part->gear();
     const auto& p = gear.parameters();
     milled::ToothedGear out;
-    out.part = owner;
-    out.solid = drawn_solid(part);
-    out.owner = std::move(owner);
+    out.part = part;
+    out.solid = drawn_solid(*part);
+    out.owner = part;
     const joints::ClearanceBody links = clearance_body(gear);
     out.facts = {p.teeth, 2 * (gear.R_e() * gear.sin_delta() + p.addendum_mm * gear.cos_delta()), 2 * links.radius_mm,
                  gear.warnings()};
@@ -173,7 +172,7 @@ class BevelProcess : public milled::ToothedProcess {
           "profile height {:g} mm); [gear.mill] states another one",
           gear.cutter_data().module_mm, gear.cutter_data().tip_radius_mm, gear.cutter_data().rack_depth_mm,
           gear.cutter_data().profile_height_mm));
-    out.body = {links, {links.radius_mm, 0, links.z_max_mm, links.z_min_mm, proof::Roof(part)}};
+    out.body = {links, {links.radius_mm, 0, links.z_max_mm, links.z_min_mm, proof::Roof(*part)}};
     out.outline = bevel::outline(gear);
     out.subtitle = fmt::format("equal-base-circle bevel gear z {}, outer module {:g} mm, {}, pitch angle {:.4f} deg",
                                p.teeth, p.outer_transverse_module_mm,
@@ -182,6 +181,7 @@ class BevelProcess : public milled::ToothedProcess {
     return out;
   }
 
+  std::shared_ptr<const bevel_gear::BevelPart> part_;
   const bevel_gear::BevelGear& bevel_;
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "geometry/inspection/bevel_touches.h"
 #include "tests/geometry/bevel_gear/samples.h"
@@ -58,7 +59,7 @@ double deepest(const test::BruteForceBevelGear& left, const bevel_gear::BevelGea
 
 TEST(BevelTouches, TheBallAndItsStemMeetNothingButTheirWall) {
   for (const auto& [name, gear, options] : bevel_trials()) {
-    const TouchedBevelGear part(gear);
+    const TouchedBevelGear part(std::make_shared<bevel_gear::BevelPart>(gear));
     const auto plan = inspection::plan_touches(part, options);
     ASSERT_TRUE(plan) << name << ": " << plan.error().message;
     EXPECT_EQ(plan->touches.size(), std::size_t(options.spaces) * 4) << name;
@@ -117,7 +118,7 @@ std::vector<TouchResult> bevel_read_of(const bevel_gear::BevelGear& gear, const 
 TEST(BevelTouches, AGearThatStandsAnywhereIsFound) {
   test::Random random(29);
   for (const auto& [name, gear, options] : bevel_trials()) {
-    const TouchedBevelGear part(gear);
+    const TouchedBevelGear part(std::make_shared<bevel_gear::BevelPart>(gear));
     const auto plan = inspection::plan_touches(part, options);
     ASSERT_TRUE(plan);
     double worst = 0, worst_turn = 0;
@@ -148,7 +149,7 @@ TEST(BevelTouches, AGearThatStandsAnywhereIsFound) {
 
 TEST(BevelTouches, ABlankIsFoundByItsFaceCone) {
   for (const auto& [name, gear, options] : bevel_trials()) {
-    const TouchedBevelGear part(gear);
+    const TouchedBevelGear part(std::make_shared<bevel_gear::BevelPart>(gear));
     const auto plan = inspection::plan_blank_touches(part, options);
     ASSERT_TRUE(plan) << name;
     ASSERT_EQ(plan->touches.size(), std::size_t(options.spaces) * 2);
@@ -179,7 +180,8 @@ TEST(BevelTouches, ABlankIsFoundByItsFaceCone) {
 
 TEST(BevelTouches, WhatIsTooLargeIsRefused) {
   const auto gear = bevel_test::made(bevel_test::w4(), bevel_test::wheel_mill());
-  const auto large = inspection::plan_touches(TouchedBevelGear(gear), {8.0, 0, 1, 0.05, 4});
+  const auto large =
+      inspection::plan_touches(TouchedBevelGear(std::make_shared<bevel_gear::BevelPart>(gear)), {8.0, 0, 1, 0.05, 4});
   ASSERT_FALSE(large);
   EXPECT_NE(large.error().message.find("the largest that does is"), std::string::npos) << large.error().message;
 }
