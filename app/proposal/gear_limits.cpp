@@ -7,8 +7,6 @@
 #include "cam/cut/unreached.h"
 #include "cam/plan/first_ball.h"
 #include "geometry/base/angle.h"
-#include "geometry/cylindrical/part.h"
-#include "geometry/face_gear/part.h"
 #include "geometry/spiral_bevel/basic_settings.h"
 
 namespace toothpath::proposal {
@@ -27,14 +25,6 @@ bool complete(const Wishes& wishes) {
     return q.what == Quantity::inner || q.what == Quantity::outer || !wishes.gear || !belongs(q, *wishes.gear) ||
            wishes[q.what];
   });
-}
-
-void add_balls(std::shared_ptr<const tooth_space::ToothedPart> gear, FaceFacts& facts) {
-  const double m = gear->module_mm(), reach = 3 * m;
-  const analytic::GearDistance part(std::move(gear), reach);
-  if (part.refusal()) return;
-  facts.largest_ball = 2 * cut::largest_reaching_ball(part, 1.5 * m).radius_mm;
-  facts.first_ball = plan::first_ball_mm(part, kRoughingAllowance * m, reach);
 }
 
 }  // namespace
@@ -170,45 +160,13 @@ std::optional<FaceRange> face_range(const Wishes& wishes) {
   return std::isfinite(range.inner) && range.outer > range.inner ? std::optional(range) : std::nullopt;
 }
 
-FaceFacts face_facts(const face_gear::FaceGear& gear) {
-  FaceFacts facts;
-  for (const auto& ring : gear.rings())
-    for (const double r : {ring.zone.inner_radius_mm, ring.zone.outer_radius_mm})
-      if (const auto root = face_gear::root_height(ring.surface, r))
-        facts.depth = std::max(facts.depth, ring.surface.z_tip(r) - *root);
-  add_balls(face_gear::part_of(gear), facts);
-  return facts;
-}
-
-FaceFacts cylindrical_facts(const cylindrical::CylindricalGear& gear) {
-  FaceFacts facts;
-  facts.depth = 0.5 * (gear.tip_diameter() - gear.root_diameter());
-  add_balls(cylindrical::part_of(gear), facts);
-  return facts;
-}
-
-FaceFacts straight_bevel_facts(const straight_bevel::StraightBevelGear& gear) {
-  FaceFacts facts;
-  facts.depth = gear.parameters().addendum_mm + gear.parameters().dedendum_mm;
-  add_balls(straight_bevel::part_of(gear), facts);
-  return facts;
-}
-
-FaceFacts spiral_bevel_facts(const spiral_bevel::SpiralBevelGear& gear) {
-  FaceFacts facts;
-  const auto& ring = gear.space().outline();  // s is minus the cone distance
-  facts.depth = std::max(gear.space().tip(ring.s_from) - gear.body().root_back,
-                         gear.space().tip(ring.s_to) - gear.body().root_front);
-  add_balls(spiral_bevel::part_of(gear), facts);
-  return facts;
-}
-
-FaceFacts flank_grid_facts(const flank_grid::FlankGridGear& gear) {
-  FaceFacts facts;
-  const auto& ring = gear.space().outline();
-  for (const double s : {ring.s_from, ring.s_to})
-    facts.depth = std::max(facts.depth, gear.space().tip(s) - gear.root(s));
-  add_balls(flank_grid::part_of(gear), facts);
+FaceFacts facts_of(std::shared_ptr<const tooth_space::ToothedPart> gear, double depth_mm) {
+  FaceFacts facts{depth_mm, 0, 0};
+  const double m = gear->module_mm(), reach = 3 * m;
+  const analytic::GearDistance part(std::move(gear), reach);
+  if (part.refusal()) return facts;
+  facts.largest_ball = 2 * cut::largest_reaching_ball(part, 1.5 * m).radius_mm;
+  facts.first_ball = plan::first_ball_mm(part, kRoughingAllowance * m, reach);
   return facts;
 }
 

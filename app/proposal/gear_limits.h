@@ -1,6 +1,7 @@
 // The limits of the gear while it is chosen: where its teeth end, and which mills reach all of it.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "app/proposal/wishes.h"
@@ -48,10 +49,6 @@ struct FaceFacts {
   [[nodiscard]] double most_finishing_mm() const { return 0.97 * largest_ball; }
   [[nodiscard]] double most_roughing_mm() const { return 0.95 * first_ball; }
 };
-[[nodiscard]] FaceFacts face_facts(const face_gear::FaceGear& gear);
-[[nodiscard]] FaceFacts cylindrical_facts(const cylindrical::CylindricalGear& gear);
-[[nodiscard]] FaceFacts straight_bevel_facts(const straight_bevel::StraightBevelGear& gear);
-[[nodiscard]] FaceFacts spiral_bevel_facts(const spiral_bevel::SpiralBevelGear& gear);
-[[nodiscard]] FaceFacts flank_grid_facts(const flank_grid::FlankGridGear& gear);
+[[nodiscard]] FaceFacts facts_of(std::shared_ptr<const tooth_space::ToothedPart> gear, double depth_mm);
 
 }  // namespace toothpath::proposal

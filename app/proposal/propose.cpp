@@ -8,6 +8,8 @@
 
 #include "app/proposal/points_gear.h"
 #include "geometry/base/angle.h"
+#include "geometry/cylindrical/part.h"
+#include "geometry/face_gear/part.h"
 #include "geometry/tooth_space/bevel_body.h"
 #include "machines/machine_file.h"
 #include "machines/shaper_machine.h"
@@ -84,7 +86,12 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_face(const Wishes& wishes) 
   const face_gear::FaceGear& gear = *chosen.face;
   chosen.diameter_mm = 2 * gear.outer_radius();
   if (wishes.route == Route::shaped) return chosen;
-  chosen.facts = face_facts(gear);
+  double depth = 0;
+  for (const auto& ring : gear.rings())
+    for (const double r : {ring.zone.inner_radius_mm, ring.zone.outer_radius_mm})
+      if (const auto root = face_gear::root_height(ring.surface, r))
+        depth = std::max(depth, ring.surface.z_tip(r) - *root);
+  chosen.facts = facts_of(face_gear::part_of(gear), depth);
   const double m = wishes.at(Quantity::module);
   chosen.part = {gear.outer_radius(),
                  gear.lowest_root() - 2.5 * m,
@@ -114,7 +121,7 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_cylindrical(const Wishes& w
   ChosenGear chosen;
   chosen.diameter_mm = gear.tip_diameter();
   if (wishes.cylinder) chosen.module_mm = gear.parameters().module_mm;
-  chosen.facts = cylindrical_facts(gear);
+  chosen.facts = facts_of(cylindrical::part_of(gear), 0.5 * (gear.tip_diameter() - gear.root_diameter()));
   chosen.part = {0.5 * gear.tip_diameter(),
                  from,
                  to,
@@ -138,7 +145,7 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_straight_bevel(const Wishes
   const auto& w = gear.space().kernel();
   ChosenGear chosen;
   chosen.diameter_mm = bevel_diameter_mm(p);
-  chosen.facts = straight_bevel_facts(gear);
+  chosen.facts = facts_of(part_of(gear), p.addendum_mm + p.dedendum_mm);
   const auto [front, back] = tooth_space::body_ends(gear.space(), gear.body());
   chosen.part = {0.5 * chosen.diameter_mm,
                  std::min(front, back),
@@ -161,7 +168,8 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_spiral_bevel(const Wishes& 
   chosen.spiral = std::make_shared<const spiral_bevel::SpiralBevelParameters>(p);
   chosen.diameter_mm = 2 * ring.chart.r(ring.s_from, gear.space().tip(ring.s_from));
   chosen.module_mm = gear.body().module_mm;
-  chosen.facts = spiral_bevel_facts(gear);
+  chosen.facts = facts_of(part_of(gear), std::max(gear.space().tip(ring.s_from) - gear.body().root_back,
+                                                  gear.space().tip(ring.s_to) - gear.body().root_front));
   const auto [front, back] = tooth_space::body_ends(gear.space(), gear.body());
   chosen.part = {0.5 * chosen.diameter_mm,
                  std::min(front, back),
@@ -181,10 +189,12 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_flank_grid(const Wishes& wi
   if (auto* refusals = made.refused()) return located(std::move(*refusals));
   const flank_grid::FlankGridGear& gear = made.value();
   const auto& p = gear.parameters();
-  const auto& chart = gear.space().outline().chart;
+  const auto& ring = gear.space().outline();
+  const auto& chart = ring.chart;
+  const auto depth = [&](double s) { return gear.space().tip(s) - gear.root(s); };
   ChosenGear chosen;
   chosen.module_mm = gear.module_mm();
-  chosen.facts = flank_grid_facts(gear);
+  chosen.facts = facts_of(part_of(gear), std::max({0.0, depth(ring.s_from), depth(ring.s_to)}));
   double radius_mm = 0, low = INFINITY, high = -INFINITY;
   for (const auto& line : {p.root, p.tip, gear.body()})
     for (const Vec2& corner : line) {
