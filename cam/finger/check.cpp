@@ -82,8 +82,8 @@ AxialGap axial_gap(const bevel_gear::BevelGear& gear, const path::ToolMotion& m)
   AxialGap out;
   for (int k = 0; k <= n; ++k) {
     const double t = static_cast<double>(k) / n;
-    const Vec3 u = motion_axis(m, t);
-    const double d = u.dot(motion_tip(m, t)) - blank_support(gear, u);
+    const Vec3 u = path::axis_at(m, t);
+    const double d = u.dot(path::tip_at(m, t)) - blank_support(gear, u);
     if (d < out.gap) out.gap = d, out.at = t;
   }
   out.gap -= m.deviation_mm + m.axis_deviation * 2 * gear.R_e() + gear.R_e() * (swing / n) * (swing / n) / 8;
@@ -157,7 +157,7 @@ struct FingerGougeCheck::State {
     proof::GougeResult& g = result.gouge;
     BodiesVerdict out;
     const AxialGap above = axial_gap(gear, m);
-    const Vec3 tip = motion_tip(m, above.at), axis = motion_axis(m, above.at);
+    const Vec3 tip = path::tip_at(m, above.at), axis = path::axis_at(m, above.at);
     const auto need_clearance = [&](double gap, const Vec3& place, tool::Body body, const std::string& patch) {
       if (gap < std::min(out.clearance_mm, g.clearance_mm)) g.closest = place_of(gear, m, place, -gap, body, patch);
       out.clearance_mm = std::min(out.clearance_mm, gap);
@@ -236,10 +236,10 @@ struct FingerGougeCheck::State {
     MotionDepth out;
     for (int k = 0; k <= sampling.intervals; ++k) {
       const double t = static_cast<double>(k) / sampling.intervals;
-      const auto d = pose_depth(gear, tool, motion_tip(m, t), motion_axis(m, t));
+      const auto d = pose_depth(gear, tool, path::tip_at(m, t), path::axis_at(m, t));
       result.root_gouge_mm = std::max(result.root_gouge_mm, d.root);
       result.tilt_rad = std::max(result.tilt_rad, d.tilt);
-      if (d.root > out.dip_mm) out.dip_mm = d.root, out.lowest = motion_tip(m, t);
+      if (d.root > out.dip_mm) out.dip_mm = d.root, out.lowest = path::tip_at(m, t);
       if (d.depth > worst.depth) worst = d;
       ++g.distance_queries;
     }

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "cam/finger/obstacles.h"
-#include "cam/finger/tool.h"
 #include "cam/tool/frustum_distance.h"
 #include "geometry/base/angle.h"
 
@@ -113,13 +112,13 @@ FingerClearance::FingerClearance(const bevel_gear::BevelGear& gear) : gear_(gear
 FoundGap FingerClearance::least(const tool::Frustum& body, const path::ToolMotion& m, const FoundGap& known) const {
   FoundGap best = known;
   const auto gap_at = [&](const Vec3& p, double t) {
-    const Vec3 axis = motion_axis(m, t), v = p - motion_tip(m, t);
+    const Vec3 axis = path::axis_at(m, t), v = p - path::tip_at(m, t);
     const double h = v.dot(axis);
     return frustum_distance(Vec3((v - h * axis).norm(), 0, h), body);
   };
   const double arm = std::hypot(body.to, std::max(body.radius_from, body.radius_to));
   const double way = (m.tip_to - m.tip_from).norm() + arm * (m.axis_to - m.axis_from).norm();
-  const Vec3 middle = motion_tip(m, 0.5) + body.from * motion_axis(m, 0.5);
+  const Vec3 middle = path::tip_at(m, 0.5) + body.from * path::axis_at(m, 0.5);
   const double azimuth = std::atan2(middle.y(), middle.x()) / (2 * kPi);
   for (const Patch& p : patches_) {
     if (gap_at(p.centre, 0.5) - p.radius - way > best.gap_mm) continue;

@@ -20,8 +20,8 @@ class WallSearch {
     const int n = std::max(1, int(std::ceil((m.tip_to - m.tip_from).norm() / kPiece)));
     for (int k = 0; k < n; ++k) {
       path::ToolMotion piece = m;
-      piece.tip_from = motion_tip(m, double(k) / n), piece.tip_to = motion_tip(m, double(k + 1) / n);
-      piece.axis_from = motion_axis(m, double(k) / n), piece.axis_to = motion_axis(m, double(k + 1) / n);
+      piece.tip_from = path::tip_at(m, double(k) / n), piece.tip_to = path::tip_at(m, double(k + 1) / n);
+      piece.axis_from = path::axis_at(m, double(k) / n), piece.axis_to = path::axis_at(m, double(k + 1) / n);
       pieces_.push_back(piece);
     }
   }

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
-#include "cam/finger/tool.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/golden_section.h"
 
 namespace toothpath::finger {
 namespace {
@@ -46,13 +47,9 @@ double gap_along(const ToolHull& tool, const CoaxialBody& body, const path::Tool
 /// Place of the greatest value between a and b, of a function that rises and then falls.
 template <typename F>
 double highest(const F& at, double a, double b, int steps) {
-  constexpr double gold = 0.6180339887498949;
-  double x1 = b - gold * (b - a), x2 = a + gold * (b - a), f1 = at(x1), f2 = at(x2);
-  for (int k = 0; k < steps; ++k) {
-    if (f1 < f2) a = x1, x1 = x2, f1 = f2, x2 = a + gold * (b - a), f2 = at(x2);
-    else b = x2, x2 = x1, f2 = f1, x1 = b - gold * (b - a), f1 = at(x1);
-  }
-  return f1 > f2 ? x1 : x2;
+  auto search = golden_section<std::greater_equal<>>(a, b, at);
+  for (int k = 0; k < steps; ++k) search.step();
+  return search.best().first;
 }
 
 struct Direction {
@@ -62,7 +59,7 @@ struct Direction {
 
 /// Best of the directions in the axial plane through the middle of the tool.
 Direction in_axial_plane(const ToolHull& tool, const CoaxialBody& body, const path::ToolMotion& m) {
-  const Vec3 axis = motion_axis(m, 0.5);
+  const Vec3 axis = path::axis_at(m, 0.5);
   Vec3 outwards(axis.x(), axis.y(), 0);
   if (outwards.norm() < 1e-9) outwards = Vec3(m.tip_from.x() + m.tip_to.x(), m.tip_from.y() + m.tip_to.y(), 0);
   outwards = outwards.norm() < 1e-9 ? Vec3(1, 0, 0) : Vec3(outwards.normalized());
@@ -123,10 +120,10 @@ Vec3 meeting_place(const ToolHull& tool, const CoaxialBody& body, const path::To
   for (const Vec2& rim : body.rims)
     part.add(rim.x() * across + rim.y() * n.z(), rim.x() * radial + rim.y() * Vec3::UnitZ());
   for (const double t : {0.0, 1.0}) {
-    const Vec3 axis = motion_axis(m, t), side = n - n.dot(axis) * axis;
+    const Vec3 axis = path::axis_at(m, t), side = n - n.dot(axis) * axis;
     const Vec3 down = side.norm() > 1e-12 ? Vec3(-side.normalized()) : Vec3(0, 0, 0);
     for (const Vec2& rim : tool.rims) {
-      const Vec3 p = motion_tip(m, t) + rim.x() * axis + rim.y() * down;
+      const Vec3 p = path::tip_at(m, t) + rim.x() * axis + rim.y() * down;
       low.add(-n.dot(p), p);
     }
   }
@@ -151,8 +148,8 @@ ObstacleGap gap_by_halves(const ToolHull& tool, const CoaxialBody& body, const p
   const bool last = depth == 0 || (m.tip_to - m.tip_from).norm() < 0.05;
   if (best.gap - loss <= kEnough && !last) {
     path::ToolMotion first = m, second = m;
-    first.tip_to = second.tip_from = motion_tip(m, 0.5);
-    first.axis_to = second.axis_from = motion_axis(m, 0.5);
+    first.tip_to = second.tip_from = path::tip_at(m, 0.5);
+    first.axis_to = second.axis_from = path::axis_at(m, 0.5);
     const ObstacleGap a = gap_by_halves(tool, body, first, off, depth - 1),
                       b = gap_by_halves(tool, body, second, off, depth - 1);
     const ObstacleGap& less = a.gap < b.gap ? a : b;

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
+
+#include "geometry/base/golden_section.h"
 
 namespace toothpath::finger {
 
@@ -56,16 +59,12 @@ RidgeResult highest_ridge(const bevel_gear::BevelGear& gear, std::span<const Fin
       if (j == 0 || h > row.height) row.height = h, at = j;
     }
     // A ridge is a kink: narrow down on it.
-    double a = e_L + (e_U - e_L) * std::max(0.0, at - 1) / (n - 1),
-           b = e_L + (e_U - e_L) * std::min(n - 1.0, at + 1) / (n - 1);
-    constexpr double gold = 0.6180339887498949;
-    double x1 = b - gold * (b - a), x2 = a + gold * (b - a), f1 = left(x1), f2 = left(x2);
+    const double a = e_L + (e_U - e_L) * std::max(0.0, at - 1) / (n - 1),
+                 b = e_L + (e_U - e_L) * std::min(n - 1.0, at + 1) / (n - 1);
+    auto search = golden_section<std::greater<>>(a, b, left);
     row.azimuth = e_L + (e_U - e_L) * at / (n - 1);
-    for (int k = 0; k < 22; ++k) {
-      if (f1 > f2) b = x2, x2 = x1, f2 = f1, x1 = b - gold * (b - a), f1 = left(x1);
-      else a = x1, x1 = x2, f1 = f2, x2 = a + gold * (b - a), f2 = left(x2);
-    }
-    if (std::max(f1, f2) > row.height) row.height = std::max(f1, f2), row.azimuth = f1 > f2 ? x1 : x2;
+    for (int k = 0; k < 22; ++k) search.step();
+    if (const auto [azimuth, height] = search.best(); height > row.height) row.height = height, row.azimuth = azimuth;
     row.points += 24;
   });
   out.least_mm = rows.front().height;

@@ -67,13 +67,10 @@ FingerTool::FingerTool(const bevel_gear::BevelGear& own, const bevel_gear::Bevel
       shank_from_mm(finger_flute_end(own.cutter(), tool)),
       holder_from_mm(tool.holder.empty() ? 1e6 : tool.stick_out_mm) {}
 
-Vec3 motion_axis(const path::ToolMotion& m, double t) { return ((1 - t) * m.axis_from + t * m.axis_to).normalized(); }
-Vec3 motion_tip(const path::ToolMotion& m, double t) { return m.tip_from + t * (m.tip_to - m.tip_from); }
-
 double least_distance(const Vec3& p, const path::ToolMotion& m, const FingerTool& tool, double best) {
   const double h_f = tool.gear.parameters().dedendum_mm;
   const auto meridian = [&](double t) {
-    const Vec3 u = motion_axis(m, t), w = p - motion_tip(m, t);
+    const Vec3 u = path::axis_at(m, t), w = p - path::tip_at(m, t);
     const double s = w.dot(u);
     return Vec2(s - h_f, (w - s * u).norm());
   };
@@ -113,7 +110,7 @@ double covering_height(const FingerTool& tool, const Vec3& foot, const Vec3& nor
                        double best) {
   const double h_f = tool.gear.parameters().dedendum_mm, rho_max = tool.solid.largest_radius();
   // Closest approach of the axis to the foot point.
-  const Vec3 u = motion_axis(m, 0.5), w = foot - m.tip_from, d = m.tip_to - m.tip_from;
+  const Vec3 u = path::axis_at(m, 0.5), w = foot - m.tip_from, d = m.tip_to - m.tip_from;
   const Vec3 wp = w - w.dot(u) * u, dp = d - d.dot(u) * u;
   const double d2 = dp.squaredNorm();
   // Down moves: the lower end.
@@ -123,7 +120,7 @@ double covering_height(const FingerTool& tool, const Vec3& foot, const Vec3& nor
   // Even straight above the nearest place the cutter is higher than what is left already. The normal leans by rho/r_v
   // against the axis, which shifts the radius by less than 0.2 mm over the depth of a tooth.
   if (tool.table.floor_below(std::max(0.0, nearest - 0.2)) + h_f - 0.05 > best) return best;
-  const Vec3 axis = motion_axis(m, t), tip = motion_tip(m, t);
+  const Vec3 axis = path::axis_at(m, t), tip = path::tip_at(m, t);
   double h = 0;
   for (int k = 0; k < 12; ++k) {
     const Vec3 v = foot + h * normal - tip;

@@ -39,10 +39,6 @@ struct FingerTool {
   FingerTool(const bevel_gear::BevelGear& own, const bevel_gear::BevelGear& finished, const tool::ToolAssembly& tool);
 };
 
-/// Pose on a motion, t = 0 .. 1.
-[[nodiscard]] Vec3 motion_axis(const path::ToolMotion& m, double t);
-[[nodiscard]] Vec3 motion_tip(const path::ToolMotion& m, double t);
-
 /// Distance from a point of the blank to the cutter, least over one motion [mm], negative inside; `best` where it is
 /// not less.
 [[nodiscard]] double least_distance(const Vec3& p, const path::ToolMotion& m, const FingerTool& tool, double best);

@@ -27,7 +27,7 @@ Cover cover_of(const bevel_gear::BevelGear& gear, const FingerTool& tool, const 
   const PoseSampling sampling = pose_sampling(gear, tool, m);
   for (int j = 0; j <= sampling.intervals; ++j) {
     const double t = static_cast<double>(j) / sampling.intervals;
-    const ConePose pose = cone_pose(gear, motion_tip(m, t), motion_axis(m, t), 0.0);
+    const ConePose pose = cone_pose(gear, path::tip_at(m, t), path::axis_at(m, t), 0.0);
     if (pose.lift > 0.05 || pose.R_c < from - 1 || pose.R_c > to + 1) return {};
     cover.from = std::min(cover.from, pose.R_c);
     cover.to = std::max(cover.to, pose.R_c);

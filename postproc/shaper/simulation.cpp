@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/golden_section.h"
 #include "geometry/face_gear/inverse.h"
 #include "geometry/face_gear/limits.h"
 #include "postproc/shaper/setup.h"
@@ -47,24 +49,9 @@ double reach(const face_gear::FaceGearSurface<double>& gear, double inner_radius
 
 template <typename F>
 double golden_minimum(F&& f, double lo, double hi) {
-  constexpr double kRatio = 0.6180339887498949;
-  double a = lo, b = hi, c = b - kRatio * (b - a), d = a + kRatio * (b - a), fc = f(c), fd = f(d);
-  for (int k = 0; k < 48; ++k) {
-    if (fc < fd) {
-      b = d;
-      d = c;
-      fd = fc;
-      c = b - kRatio * (b - a);
-      fc = f(c);
-    } else {
-      a = c;
-      c = d;
-      fc = fd;
-      d = a + kRatio * (b - a);
-      fd = f(d);
-    }
-  }
-  return std::min(fc, fd);
+  auto search = golden_section<std::less<>>(lo, hi, std::ref(f));
+  for (int k = 0; k < 48; ++k) search.step();
+  return search.best().second;
 }
 
 }  // namespace
