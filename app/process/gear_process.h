@@ -35,6 +35,7 @@
 #include "cam/proof/limits.h"
 #include "cam/rest/rest_mesh.h"
 #include "geometry/exchange/shell.h"
+#include "geometry/inspection/grid.h"
 #include "geometry/inspection/touches.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "machines/machine.h"
@@ -60,6 +61,21 @@ enum class FacetSize : std::uint8_t { file, picture };
 /// Points of a flank on which the cut surface is measured; 0: as many as the gear type finds right.
 struct FlankGrid {
   int rows = 0, columns = 0;
+};
+
+/// Nominal points of both flanks of every zone, in the order of inspection.csv.
+struct InspectedFlanks {
+  inspection::InspectionOptions grid;
+  std::vector<inspection::InspectionPoint> points;
+  inspection::FlankNames names;
+};
+/// Another grid than that of inspection.csv.
+struct GridAsked {
+  std::optional<int> rows, columns;
+  std::optional<double> margin;
+  [[nodiscard]] inspection::InspectionOptions instead_of(const inspection::InspectionOptions& usual) const {
+    return {rows.value_or(usual.rows), columns.value_or(usual.columns), margin.value_or(usual.margin)};
+  }
 };
 
 /// A gear that is milled: from its operations to checked paths, and from the motions of a program to a verdict.
@@ -150,6 +166,10 @@ class GearProcess {
   [[nodiscard]] virtual sheet::PartOutline outline() const = 0;
   /// Subtitle and tools of the report page.
   [[nodiscard]] virtual page::GearOnPage on_page(const std::string& machine_name) const = 0;
+  /// limits.json.
+  [[nodiscard]] virtual std::string limits_json() const = 0;
+  /// Refused: a grid that the gear type does not measure; a station where a flank does not reach from tip to fillet.
+  [[nodiscard]] virtual Result<InspectedFlanks> inspected(const GridAsked& asked = {}) const = 0;
   /// Where its flanks end, for the page of a run; may be empty.
   [[nodiscard]] virtual std::vector<svg::LineChart> limit_charts() const = 0;
   /// What a check of fixture and stock must know. Errors: a tool that does not fit the gear, at its place in the job.

@@ -7,22 +7,14 @@
 #include <tbb/global_control.h>
 
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <optional>
 
 #include "app/commands/run.h"
 #include "app/job/file.h"
-#include "app/process/bevel/files.h"
-#include "app/process/cylinder/limits.h"
-#include "app/process/flank_grid/limits.h"
-#include "app/process/gear_of_job.h"
-#include "app/process/spiral_bevel/limits.h"
-#include "app/process/straight_bevel/limits.h"
-#include "app/report/limits/json.h"
+#include "app/process/flow/registry.h"
 #include "geometry/base/inputs_read.h"
-#include "geometry/cylindrical/part.h"
-#include "geometry/face_gear/part.h"
-#include "geometry/inspection/bevel_grid.h"
 
 namespace toothpath::python {
 namespace {
@@ -86,19 +78,24 @@ struct Grid {
   Numbers points, normals;
 };
 
-template <typename Name>
-std::vector<Grid> grids_of(const std::vector<inspection::InspectionPoint>& points,
-                           const inspection::InspectionOptions& options, const Name& name) {
-  const std::size_t count = static_cast<std::size_t>(options.rows) * static_cast<std::size_t>(options.columns);
+/// A side as files call it: a number, or the letter of a wall.
+py::object side_of(const inspection::FlankNames& names, int side) {
+  const std::string word = side > 0 ? names.plus : names.minus;
+  return word == std::to_string(side) ? py::object(py::int_(side)) : py::object(py::str(word));
+}
+
+std::vector<Grid> grids_of(const process::InspectedFlanks& flanks) {
+  const auto& [rows, columns, margin] = flanks.grid;
+  const std::size_t count = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
   std::vector<Grid> out;
-  for (std::size_t first = 0; first + count <= points.size(); first += count) {
+  for (std::size_t first = 0; first + count <= flanks.points.size(); first += count) {
     std::vector<Vec3> p, n;
     for (std::size_t k = first; k < first + count; ++k) {
-      p.push_back(points[k].p);
-      n.push_back(points[k].n);
+      p.push_back(flanks.points[k].p);
+      n.push_back(flanks.points[k].n);
     }
-    out.push_back({points[first].zone, options.rows, options.columns, name(points[first].side),
-                   array_of(p, options.rows, options.columns), array_of(n, options.rows, options.columns)});
+    out.push_back({flanks.points[first].zone, rows, columns, side_of(flanks.names, flanks.points[first].side),
+                   array_of(p, rows, columns), array_of(n, rows, columns)});
   }
   return out;
 }
@@ -106,60 +103,24 @@ std::vector<Grid> grids_of(const std::vector<inspection::InspectionPoint>& point
 /// The gear of a job file; plans nothing.
 class Gear {
  public:
-  explicit Gear(const std::filesystem::path& file) : job_(value_or_raise(job::read_job_file(file.string()))) {
-    if (job_.face_gear()) face_ = value_or_raise(process::make_face_gear(job_));
-    else if (job_.bevel_gear()) bevel_ = value_or_raise(process::make_bevel_gear(job_));
-    else if (job_.cylindrical_gear()) cylinder_ = value_or_raise(process::make_cylindrical_gear(job_));
-    else if (job_.straight_bevel_gear()) cone_ = value_or_raise(process::make_straight_bevel_gear(job_));
-    else if (job_.spiral_bevel_gear()) spiral_ = value_or_raise(process::make_spiral_bevel_gear(job_));
-    else points_ = value_or_raise(process::make_flank_grid_gear(job_));
-  }
+  explicit Gear(const std::filesystem::path& file)
+      : job_(value_or_raise(job::read_job_file(file.string()))), gear_(value_or_raise(flow::make_process(job_))) {}
+  Gear(const Gear&) = delete;  // the gear refers to its job
+  Gear& operator=(const Gear&) = delete;
 
   [[nodiscard]] std::string name() const { return job_.name; }
   [[nodiscard]] std::string type() const { return job_.gear_type(); }
-  [[nodiscard]] int teeth() const {
-    return std::visit([](const auto& gear) { return gear.teeth; }, job_.gear);
-  }
-  [[nodiscard]] std::vector<std::string> warnings() const {
-    return face_ ? face_->warnings() : bevel_ ? bevel_->warnings() : std::vector<std::string>();
-  }
-  [[nodiscard]] py::object limits() const {
-    return from_json(face_       ? limits::limits_json(*face_)
-                     : bevel_    ? bevel::limits_json(*bevel_)
-                     : cylinder_ ? cylinder::limits_json(*cylinder_)
-                     : cone_     ? straight_bevel::limits_json(*cone_)
-                     : spiral_   ? spiral_bevel::limits_json(*spiral_)
-                                 : flank_grid::limits_json(*points_));
-  }
-
+  [[nodiscard]] int teeth() const { return gear_->part().teeth; }
+  [[nodiscard]] std::vector<std::string> warnings() const { return gear_->part().warnings; }
+  [[nodiscard]] py::object limits() const { return from_json(gear_->limits_json()); }
   [[nodiscard]] std::vector<Grid> flanks(std::optional<int> rows, std::optional<int> columns,
                                          std::optional<double> margin) const {
-    const inspection::InspectionOptions usual = bevel_ ? inspection::kBevelInspection : inspection::InspectionOptions{};
-    const inspection::InspectionOptions options{rows.value_or(usual.rows), columns.value_or(usual.columns),
-                                                margin.value_or(usual.margin)};
-    if (!bevel_) {
-      const auto points = value_or_raise(inspection::inspection_grid(face_       ? drawn_solid(*face_)
-                                                                     : cylinder_ ? drawn_solid(*cylinder_)
-                                                                     : cone_     ? drawn_solid(*cone_)
-                                                                     : spiral_   ? drawn_solid(*spiral_)
-                                                                                 : drawn_solid(*points_),
-                                                                     options));
-      return grids_of(points, options, [](int side) { return py::int_(side); });
-    }
-    const auto points = value_or_raise(inspection::bevel_inspection_grid(*bevel_, options));
-    return grids_of(points, options, [](int side) {
-      return py::str(side > 0 ? inspection::kWallNames.plus : inspection::kWallNames.minus);
-    });
+    return grids_of(value_or_raise(gear_->inspected({rows, columns, margin})));
   }
 
  private:
   job::Job job_;
-  std::optional<face_gear::FaceGear> face_;
-  std::optional<bevel_gear::BevelGear> bevel_;
-  std::optional<cylindrical::CylindricalGear> cylinder_;
-  std::optional<straight_bevel::StraightBevelGear> cone_;
-  std::optional<spiral_bevel::SpiralBevelGear> spiral_;
-  std::optional<flank_grid::FlankGridGear> points_;
+  std::unique_ptr<process::GearProcess> gear_;
 };
 
 /// What a run found out, and where its files are.

@@ -8,7 +8,6 @@
 #include "cam/finger/obstacles.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/json_text.h"
-#include "geometry/inspection/bevel_grid.h"
 
 namespace toothpath::bevel {
 namespace {
@@ -80,12 +79,6 @@ std::string limits_json(const bevel_gear::BevelGear& g) {
                               {"inner_cone_distance", g.R_i()},
                               {"trace_end", g.R_0()}};
   return json_text(j, 2) + "\n";
-}
-
-Result<std::string> inspection_text(const bevel_gear::BevelGear& gear) {
-  const auto points = inspection::bevel_inspection_grid(gear);
-  if (!points) return points.error();
-  return inspection_csv(*points, inspection::kWallNames);
 }
 
 }  // namespace toothpath::bevel

@@ -1,4 +1,4 @@
-// What describes a bevel gear in files and to posts and sheets: limits, inspection points, its outline.
+// What describes a bevel gear in files and to posts and sheets: limits, its outline.
 #pragma once
 
 #include <string>
@@ -25,8 +25,5 @@ namespace toothpath::bevel {
 /// limits.json: top_land, space_width, module_limit, tip_flat, corner_fillet_reach [mm], cutter_line_angle [deg], and
 /// more.
 [[nodiscard]] std::string limits_json(const bevel_gear::BevelGear& gear);
-
-/// inspection.csv, its flanks called L and U.
-[[nodiscard]] Result<std::string> inspection_text(const bevel_gear::BevelGear& gear);
 
 }  // namespace toothpath::bevel

@@ -17,6 +17,7 @@
 #include "cam/rest/swept_body.h"
 #include "geometry/base/angle.h"
 #include "geometry/bevel_gear/part.h"
+#include "geometry/inspection/bevel_grid.h"
 #include "geometry/inspection/bevel_touches.h"
 
 namespace toothpath::bevel {
@@ -149,8 +150,15 @@ class BevelProcess : public milled::ToothedProcess {
     return roll_pair(job(), bevel_, asked, cut, clock);
   }
 
+  [[nodiscard]] Result<process::InspectedFlanks> inspected(const process::GridAsked& asked = {}) const override {
+    process::InspectedFlanks out{asked.instead_of(inspection::kBevelInspection), {}, inspection::kWallNames};
+    auto points = inspection::bevel_inspection_grid(bevel_, out.grid);
+    if (!points) return points.error();
+    out.points = std::move(*points);
+    return out;
+  }
+
  protected:
-  [[nodiscard]] Result<std::string> inspection_text() const override { return bevel::inspection_text(bevel_); }
   [[nodiscard]] const bevel_gear::BevelGear& bevel() const { return bevel_; }
 
  private:

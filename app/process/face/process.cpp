@@ -1,24 +1,19 @@
 #include "app/process/face/process.h"
 
-#include <algorithm>
-#include <cmath>
+#include <memory>
+#include <utility>
 
 #include "app/job/measured_file.h"
 #include "app/process/face/body.h"
 #include "app/process/face/contact.h"
 #include "app/process/face/shaped_flanks.h"
-#include "app/process/face/surface_files.h"
-#include "app/process/milled/bodies.h"
-#include "app/process/milled/milling.h"
+#include "app/process/milled/toothed_process.h"
 #include "app/report/limits/chart.h"
-#include "app/report/page/tool_body.h"
+#include "app/report/limits/json.h"
+#include "app/report/page/study_page.h"
 #include "app/report/svg/html_text.h"
-#include "cam/analytic/gear_distance.h"
-#include "cam/ball/plan.h"
-#include "cam/rest/toothed_blank.h"
-#include "geometry/exchange/tooth_shell.h"
 #include "geometry/face_gear/part.h"
-#include "geometry/inspection/tooth_touches.h"
+#include "geometry/inspection/dmis.h"
 
 namespace toothpath::face {
 namespace {
@@ -36,114 +31,94 @@ std::string gear_words(const face_gear::FaceGearParameters& p) {
   return text;
 }
 
-class FaceProcess final : public process::GearProcess {
- public:
-  FaceProcess(const job::Job& job, face_gear::FaceGear gear) : job_(job), gear_(std::move(gear)) { note_part(); }
+using Owned = std::shared_ptr<const face_gear::FaceGear>;
 
-  [[nodiscard]] const process::PartFacts& part() const override { return part_; }
+milled::ToothedGear toothed(const Owned& owned) {
+  const face_gear::FaceGear& gear = *owned;
+  const face_gear::FaceGearParameters& p = gear.parameters();
+  milled::ToothedGear out;
+  out.part = face_gear::part_of(gear);
+  out.solid = drawn_solid(gear);
+  out.owner = owned;
+  out.facts = {p.teeth, 2 * gear.outer_radius(), 2 * gear.outer_radius(), gear.warnings()};
+  report::ModifiedFlanks modified{p.modifications, {}};
+  for (std::size_t zone = 0; zone < gear.rings().size(); ++zone)
+    if (const auto& form = gear.rings()[zone].form) modified.zones.push_back({static_cast<int>(zone), *form});
+  if (!modified.zones.empty()) out.facts.modified = std::move(modified);
+  out.above_mm = p.allowance_top_mm;
+  out.body = body_of(gear);
+  out.outline = {gear.inner_radius(), gear.outer_radius(),          gear.blank_top(),
+                 gear.lowest_root(),  face_gear::underside_z(gear), gear_words(p)};
+  out.subtitle = fmt::format("face gear {}/{}, module {} mm", p.shaper_teeth, p.teeth, svg::short_number(p.module_mm));
+  out.limits_json = [owned] { return limits::limits_json(*owned); };
+  return out;
+}
+
+/// The pair with the pinion of its shaper, corrections of points, and what files and pages say of its limits.
+class FaceProcess final : public milled::ToothedProcess {
+ public:
+  FaceProcess(const job::Job& job, Owned gear) : ToothedProcess(job, face::toothed(gear)), gear_(std::move(gear)) {}
+
   [[nodiscard]] Result<process::Correction> correct(const job::MeasuredInput& measured,
                                                     app::StageClock& clock) override {
-    auto corrected = clock.run("correction", [&] { return job::correct_gear(gear_, measured); });
+    auto corrected = clock.run("correction", [&] { return job::correct_gear(*gear_, measured); });
     if (!corrected) return corrected.error();
     process::Correction out;
     for (const auto& f : corrected->fit.flanks) out.rows.push_back({f.zone, f.side, f.file, f.teeth, f.residual});
     out.index = corrected->fit.index;
     out.warnings = corrected->fit.warnings;
     out.json = job::correction_json(*corrected);
-    gear_ = std::move(corrected->gear);
-    note_part();
+    gear_ = std::make_shared<const face_gear::FaceGear>(std::move(corrected->gear));
+    become(face::toothed(gear_));
     return out;
   }
-  [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine&) const override {
-    return body_of(gear_).links;
-  }
-  [[nodiscard]] sheet::PartOutline outline() const override {
-    const double root = gear_.lowest_root();
-    return {gear_.inner_radius(),          gear_.outer_radius(),          gear_.blank_top(), root,
-            face_gear::underside_z(gear_), gear_words(gear_.parameters())};
-  }
-  [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override {
-    const face_gear::FaceGearParameters& p = gear_.parameters();
-    page::GearOnPage out;
-    out.subtitle = fmt::format("face gear {}/{}, module {} mm, {}", p.shaper_teeth, p.teeth,
-                               svg::short_number(p.module_mm), machine_name);
-    for (const auto& tool : job_.tools) out.tools.push_back(page::page_end_mill(tool));
-    return out;
-  }
-  [[nodiscard]] std::vector<svg::LineChart> limit_charts() const override { return limits::limit_charts(gear_); }
+  [[nodiscard]] std::vector<svg::LineChart> limit_charts() const override { return limits::limit_charts(*gear_); }
   [[nodiscard]] Result<process::SceneGear> scene(double clearance_mm) const override {
+    auto out = ToothedProcess::scene(clearance_mm);
     // Spaces are radial enough to count teeth by the tip's azimuth.
-    process::SceneGear out{part_.teeth, clearance_mm, {}, [](const Vec3& tip) { return std::atan2(tip.y(), tip.x()); }};
-    for (const auto& tool : job_.tools) out.bodies.push_back(clearance::mesh_bodies(tool));
+    if (out) out->azimuth = [](const Vec3& tip) { return azimuth(tip); };
     return out;
   }
-  [[nodiscard]] Result<process::FinishedGear> solid() const override {
-    auto made = milled::finished_gear(drawn_solid(gear_));
-    if (!made) return process::located(job_, "gear", made.error());
-    return made;
-  }
-  [[nodiscard]] Result<mesh::TriangleMesh> mesh() const override { return milled::gear_mesh(drawn_solid(gear_)); }
-  [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh(process::FacetSize size) const override {
-    auto pitch = milled::pitch_mesh(drawn_solid(gear_), size);
-    if (!pitch) return process::located(job_, "gear", pitch.error());
-    return pitch;
-  }
-  [[nodiscard]] rest::Blank blank() const override {
-    return rest::blank_of(drawn_solid(gear_), gear_.parameters().allowance_top_mm);
-  }
-  [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::tooth_shell(drawn_solid(gear_)); }
   [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
                                    const std::vector<std::string>& assumed, app::StageClock& clock,
                                    std::vector<std::string>& files) const override {
-    return write_surface_files(output, gear_, job_.name, surface, assumed, clock, files);
-  }
-  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine,
-                                                              const proof::ProofLimits& limits,
-                                                              const process::FlankGrid& grid,
-                                                              app::StageClock& clock) const override {
-    return clock.run("distance index", [&] {
-      return std::make_unique<milled::Milling>(
-          job_, machine, analytic::GearDistance(face_gear::part_of(gear_), ball::reach_of(job_.tools)), body_of(gear_),
-          limits, grid, part_.modified);
-    });
+    process::GearFiles to(output, files);
+    if (const auto s = to.write("limits.json", limits_json()); !s) return s;
+    if (const auto s = to.write("limits.html", limits::limits_page(*gear_, job().name, assumed)); !s) return s;
+    const auto charts = limit_charts();  // two a zone
+    for (std::size_t zone = 0; 2 * zone < charts.size(); ++zone)
+      if (const auto s = to.write(charts.size() == 2 ? "limits.svg" : fmt::format("limits_{}.svg", zone),
+                                  page::standalone_svg(charts[2 * zone]));
+          !s)
+        return s;
+    const auto flanks = inspected();
+    if (!flanks) return flanks.error();
+    if (const auto s = to.write("inspection.dmi", inspection::inspection_dmis(*gear_, flanks->points, job().name)); !s)
+      return s;
+    return milled::write_bodies(
+        to, gear().solid, job().name, [&] { return inspected(); }, surface, clock);
   }
   [[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped(const process::FlankGrid& grid) const override {
-    auto places = places_on(job_, gear_, grid.rows, grid.columns);
+    auto places = places_on(job(), *gear_, grid.rows, grid.columns);
     if (auto* errors = places.refused()) return std::move(*errors);
-    return shaped_flanks(job_, gear_, std::move(places).value());
-  }
-  [[nodiscard]] std::unique_ptr<inspection::TouchedPart> touched() const override {
-    return std::make_unique<inspection::TouchedTeeth>(drawn_solid(gear_), gear_.parameters().allowance_top_mm);
+    return shaped_flanks(job(), *gear_, std::move(places).value());
   }
   [[nodiscard]] Status accepts(const process::ContactAsked&) const override { return Ok{}; }
   [[nodiscard]] process::ValueOrErrors<process::CutFlanks> measured(const job::MeasuredInput& files) const override {
-    return measured_flanks(gear_, files);
-  }
-  [[nodiscard]] std::shared_ptr<const tooth_space::ToothedPart> toothed() const override {
-    return face_gear::part_of(gear_);
+    return measured_flanks(*gear_, files);
   }
   [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,
                                                                       const process::CutFlanks* cut,
                                                                       app::StageClock& clock) const override {
-    return roll_pair(job_, gear_, asked, cut, clock);
+    return roll_pair(job(), *gear_, asked, cut, clock);
   }
   [[nodiscard]] std::string contact_section(const std::vector<proof::SurfaceGrid>& surface,
                                             std::vector<std::string>& warnings) const override {
-    return face::contact_section(job_, gear_, surface, warnings);
+    return face::contact_section(job(), *gear_, surface, warnings);
   }
 
  private:
-  void note_part() {
-    part_ = {gear_.parameters().teeth, 2 * gear_.outer_radius(), 2 * gear_.outer_radius(), gear_.warnings()};
-    report::ModifiedFlanks modified{gear_.parameters().modifications, {}};
-    for (std::size_t zone = 0; zone < gear_.rings().size(); ++zone)
-      if (const auto& form = gear_.rings()[zone].form) modified.zones.push_back({static_cast<int>(zone), *form});
-    if (!modified.zones.empty()) part_.modified = std::move(modified);
-  }
-
-  const job::Job& job_;
-  face_gear::FaceGear gear_;
-  process::PartFacts part_;
+  Owned gear_;
 };
 
 }  // namespace
@@ -151,7 +126,8 @@ class FaceProcess final : public process::GearProcess {
 process::ValueOrErrors<std::unique_ptr<process::GearProcess>> make_process(const job::Job& job) {
   auto made = process::make_face_gear(job);
   if (auto* errors = made.refused()) return std::move(*errors);
-  return std::unique_ptr<process::GearProcess>(std::make_unique<FaceProcess>(job, std::move(made).value()));
+  return std::unique_ptr<process::GearProcess>(
+      std::make_unique<FaceProcess>(job, std::make_shared<const face_gear::FaceGear>(std::move(made).value())));
 }
 
 }  // namespace toothpath::face

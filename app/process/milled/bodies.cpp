@@ -26,12 +26,6 @@ Result<std::string> pitch_text(const ToothedSolid& gear) {
 
 }  // namespace
 
-Result<std::string> inspection_text(const ToothedSolid& gear) {
-  const auto points = inspection::inspection_grid(gear);
-  if (!points) return points.error();
-  return inspection_csv(*points);
-}
-
 Result<process::FinishedGear> finished_gear(const ToothedSolid& gear) {
   const auto pitch = mesh::mesh_tooth_space(gear, kSolidSag);
   if (!pitch) return pitch.error();
@@ -46,11 +40,7 @@ Result<process::FinishedGear> finished_gear(const ToothedSolid& gear) {
   return out;
 }
 
-Result<mesh::TriangleMesh> gear_mesh(const ToothedSolid& gear) {
-  const auto pitch = mesh::mesh_tooth_space(gear, kStlSag);
-  if (!pitch) return pitch.error();
-  return mesh::join_copies(*pitch);
-}
+Result<mesh::TriangleMesh> gear_mesh(const ToothedSolid& gear) { return mesh::mesh_gear(gear, kStlSag); }
 
 Result<mesh::TriangleMesh> pitch_mesh(const ToothedSolid& gear, process::FacetSize size) {
   auto pitch =
@@ -60,9 +50,14 @@ Result<mesh::TriangleMesh> pitch_mesh(const ToothedSolid& gear, process::FacetSi
 }
 
 Status write_bodies(process::GearFiles& to, const ToothedSolid& gear, const std::string& job_name,
-                    const std::function<Result<std::string>()>& inspection,
+                    const std::function<Result<process::InspectedFlanks>()>& inspected,
                     const std::vector<proof::SurfaceGrid>& surface, app::StageClock& clock) {
-  if (const auto s = to.write("inspection.csv", clock.run("inspection grid", inspection)); !s) return s;
+  const auto inspection = clock.run("inspection grid", [&]() -> Result<std::string> {
+    const auto flanks = inspected();
+    if (!flanks) return flanks.error();
+    return inspection_csv(flanks->points, flanks->names);
+  });
+  if (const auto s = to.write("inspection.csv", inspection); !s) return s;
   if (const auto s = to.write("gear.stl", clock.run("mesh", [&] { return gear_text(gear, job_name); })); !s) return s;
   return to.write("tooth.vtp", clock.run("mesh", [&] {
     return surface.empty() ? pitch_text(gear) : report::deviation_vtp(surface);

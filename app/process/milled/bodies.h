@@ -17,13 +17,11 @@ namespace toothpath::milled {
 [[nodiscard]] Result<mesh::TriangleMesh> gear_mesh(const tooth_space::ToothedSolid& gear);
 [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh(const tooth_space::ToothedSolid& gear, process::FacetSize size);
 
-/// inspection.csv of a gear whose flanks are called 1 and -1.
-[[nodiscard]] Result<std::string> inspection_text(const tooth_space::ToothedSolid& gear);
-
 /// inspection.csv, gear.stl (all teeth, sag at most 0.01 mm) and tooth.vtp: the surface as it was cut with its
 /// deviation; without one, a pitch (sag at most 0.002 mm) with the number of the patch at every point.
 [[nodiscard]] Status write_bodies(process::GearFiles& to, const tooth_space::ToothedSolid& gear,
-                                  const std::string& job_name, const std::function<Result<std::string>()>& inspection,
+                                  const std::string& job_name,
+                                  const std::function<Result<process::InspectedFlanks>()>& inspected,
                                   const std::vector<proof::SurfaceGrid>& surface, app::StageClock& clock);
 
 }  // namespace toothpath::milled

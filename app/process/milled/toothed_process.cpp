@@ -150,6 +150,13 @@ page::GearOnPage ToothedProcess::on_page(const std::string& machine_name) const 
   for (const auto& tool : job_.tools) out.tools.push_back(page::page_end_mill(tool));
   return out;
 }
+Result<process::InspectedFlanks> ToothedProcess::inspected(const process::GridAsked& asked) const {
+  process::InspectedFlanks out{asked.instead_of({}), {}, {}};
+  auto points = inspection::inspection_grid(gear_.solid, out.grid);
+  if (!points) return points.error();
+  out.points = std::move(*points);
+  return out;
+}
 Result<process::SceneGear> ToothedProcess::scene(double clearance_mm) const {
   process::SceneGear out{gear_.facts.teeth, clearance_mm, {}, [part = aimed_](const Vec3& tip) {
                            return azimuth(tip) - azimuth_of_space(*part, tip);
@@ -168,13 +175,13 @@ Result<mesh::TriangleMesh> ToothedProcess::pitch_mesh(process::FacetSize size) c
   if (!pitch) return process::located(job_, "gear", pitch.error());
   return pitch;
 }
-rest::Blank ToothedProcess::blank() const { return rest::blank_of(gear_.solid); }
+rest::Blank ToothedProcess::blank() const { return rest::blank_of(gear_.solid, gear_.above_mm); }
 Result<exchange::GearShell> ToothedProcess::shell() const { return exchange::tooth_shell(gear_.solid); }
 Status ToothedProcess::write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
                                    const std::vector<std::string>&, app::StageClock& clock,
                                    std::vector<std::string>& files) const {
   process::GearFiles to(output, files);
-  if (const auto s = to.write("limits.json", gear_.limits_json()); !s) return s;
+  if (const auto s = to.write("limits.json", limits_json()); !s) return s;
   const auto& charts = gear_.limit_charts;
   for (std::size_t zone = 0; zone < charts.size(); ++zone)
     if (const auto s = to.write(charts.size() == 1 ? "limits.svg" : fmt::format("limits_{}.svg", zone),
@@ -182,7 +189,7 @@ Status ToothedProcess::write_files(app::OutputDir& output, const std::vector<pro
         !s)
       return s;
   return write_bodies(
-      to, gear_.solid, job_.name, [&] { return inspection_text(); }, surface, clock);
+      to, gear_.solid, job_.name, [&] { return inspected(); }, surface, clock);
 }
 std::unique_ptr<process::GearMilling> ToothedProcess::milling(const machines::Machine& machine,
                                                               const proof::ProofLimits& limits,
@@ -195,7 +202,7 @@ process::ValueOrErrors<process::CutFlanks> ToothedProcess::shaped(const process:
   return std::vector{process::needs_face_gear(job_)};
 }
 std::unique_ptr<inspection::TouchedPart> ToothedProcess::touched() const {
-  return std::make_unique<inspection::TouchedTeeth>(gear_.solid);
+  return std::make_unique<inspection::TouchedTeeth>(gear_.solid, gear_.above_mm);
 }
 Status ToothedProcess::accepts(const process::ContactAsked&) const { return needs_mate(job_); }
 process::ValueOrErrors<process::ContactFound> ToothedProcess::contact(const process::ContactAsked&,

@@ -23,6 +23,7 @@ struct ToothedGear {
   std::shared_ptr<const void> owner;
   process::PartFacts facts;
   double least_land_mm = 0;  ///< of the tips: modifications that leave less are told
+  double above_mm = 0;       ///< stock on the tips
   GearBody body;
   sheet::PartOutline outline;
   std::string subtitle;  ///< of the page, without the machine
@@ -45,6 +46,8 @@ class ToothedProcess : public process::GearProcess {
   [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine&) const override { return gear_.body.links; }
   [[nodiscard]] sheet::PartOutline outline() const override { return gear_.outline; }
   [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override;
+  [[nodiscard]] std::string limits_json() const override { return gear_.limits_json(); }
+  [[nodiscard]] Result<process::InspectedFlanks> inspected(const process::GridAsked& asked = {}) const override;
   [[nodiscard]] std::vector<svg::LineChart> limit_charts() const override { return gear_.limit_charts; }
   [[nodiscard]] Result<process::SceneGear> scene(double clearance_mm) const override;
   [[nodiscard]] Result<process::FinishedGear> solid() const override;
@@ -75,8 +78,11 @@ class ToothedProcess : public process::GearProcess {
   }
 
  protected:
-  /// inspection.csv.
-  [[nodiscard]] virtual Result<std::string> inspection_text() const { return milled::inspection_text(gear_.solid); }
+  /// From now on it is another one: the flanks to aim at.
+  void become(ToothedGear gear) {
+    gear_ = std::move(gear);
+    aimed_ = gear_.part;
+  }
   [[nodiscard]] const job::Job& job() const { return job_; }
   [[nodiscard]] const ToothedGear& gear() const { return gear_; }
 
