@@ -85,7 +85,8 @@ void results_row(std::string& out, const RunReport& report) {
   if (report.directory.empty() || report.files.empty()) return;
   namespace fs = std::filesystem;
   std::error_code error;
-  fs::path directory = fs::proximate(report.directory, error);  // as seen from here, where that is below here
+  const fs::path here = fs::current_path(error);  // proximate() alone throws where it was deleted
+  fs::path directory = error ? fs::path() : fs::proximate(report.directory, here, error);  // where it is below here
   if (error || directory.empty() || *directory.begin() == "..") directory = report.directory;
   const auto name_of = [&](std::initializer_list<std::string_view> names) -> std::string {
     for (const std::string_view name : names)

@@ -222,6 +222,15 @@ TEST(CommandLine, WithoutACurrentDirectoryNothingIsWritten) {
         << run.err;
     EXPECT_TRUE(names_in(dir.path()).empty());
   }
+  Launch whole;  // nothing is looked up there where all paths are whole
+  whole.arguments = {"surface", kQuick, "--out", dir / "out"};
+  whole.in_child = [&] {
+    ::mkdir((dir / "gone").c_str(), 0700);
+    if (::chdir((dir / "gone").c_str()) == 0) ::rmdir((dir / "gone").c_str());
+  };
+  const Finished run = run_program(whole);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("open " + (dir / "out/limits.html")), std::string::npos) << run.out;
 }
 
 // nohup, and jobs that a shell starts in the background.
