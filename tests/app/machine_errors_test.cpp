@@ -382,6 +382,8 @@ TEST(StudyMachineErrors, DamagedSamplesAreRefusedWithTheirPlace) {
         Case{"\"seed\":1", "\"seed\":\"one\"", "1:1", "\"seed\" is string; a whole number"},
         Case{"\"left_um\":2.0,", "", "1:1", "\"nominal.left_um\" is missing"},
         Case{"\"size\":1.0,", "", "1:1", "\"errors[0].size\" is missing"},
+        Case{"\"size\":1.0,", "\"size\":-1.0,", "1:1", "\"errors[0].size\" is not above 0"},
+        Case{"\"teeth\":60", "\"teeth\":0", "1:1", "\"teeth\" is not above 0"},
         Case{"\"errors\":[{", "\"errors\":[{},{", "1:1", "\"errors[0].error\" is missing"},
         Case{sample, "\"sample\":2,\"error\":7", "4:1", "\"error\" is number; a text is needed"},
         Case{sample, "\"sample\":2,\"error\":\"B.pivot\"", "4:1", "\"error\" of sample 2 is not \"A.pivot\""},

@@ -77,7 +77,12 @@ Status check_head(const Json& head, const SourcePosition& place) {
                    {"errors", json_of(std::vector{Error()})}};
   std::string fault = samples::shape_fault(model, head, "");
   if (fault.empty()) fault = beyond(head["nominal"]);
-  for (std::size_t k = 0; fault.empty() && k < head["errors"].size(); ++k) fault = beyond(head["errors"][k]);
+  if (fault.empty() && head["teeth"] < 1) fault = "\"teeth\" is not above 0";
+  for (std::size_t k = 0; fault.empty() && k < head["errors"].size(); ++k) {
+    const Json& error = head["errors"][k];
+    fault = beyond(error);
+    if (fault.empty() && error["size"] <= 0) fault = fmt::format("\"errors[{}].size\" is not above 0", k);
+  }
   return fault.empty() ? Status(Ok{}) : refused(place, fault);
 }
 
