@@ -99,7 +99,12 @@ class Judge {
   }
 
   void tcp() {
-    if (machine_.tcp == machines::TcpMode::none) return;
+    if (machine_.tcp == machines::TcpMode::none) {
+      if (control_.cutter_locations)
+        refuse("tcp", "dialect \"{}\" carries tips and tool axes, no joints: tcp = \"vectors\" is supported",
+               words_.name);
+      return;
+    }
     const machines::PostSettings& post = machine_.post;
     const bool on = !post.tcp_on.empty() || !words_.tcp_on.empty(),
                off = !post.tcp_off.empty() || !words_.tcp_off.empty();

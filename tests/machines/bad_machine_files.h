@@ -168,6 +168,8 @@ inline constexpr BadFile kBadControls[] = {
      "m.toml:4:11: error: dialect = \"linuxnc\" is not one of {controls}\n"},
     {"TCP codes missing", "tcp = \"none\"", "tcp = \"angles\"",
      "m.toml:5:7: error: tcp with dialect \"linuxcnc\" needs post.tcp_on and post.tcp_off: its codes are site data\n"},
+    {"cutter locations of joints", "\"linuxcnc\"", "\"apt\"",
+     "m.toml:5:7: error: dialect \"apt\" carries tips and tool axes, no joints: tcp = \"vectors\" is supported\n"},
 };
 
 }  // namespace toothpath::test

@@ -17,8 +17,9 @@ struct PostKeys {
 
 /// The example machine with this dialect and these lines in [post].
 inline std::string machine_with(const PostKeys& keys) {
-  return replaced(replaced(kMachine, "\"linuxcnc\"", "\"" + std::string(keys.dialect) + "\""), "[chain]",
-                  "[post]\n" + std::string(keys.lines) + "\n[chain]");
+  const std::string machine = replaced(kMachine, "\"linuxcnc\"", "\"" + std::string(keys.dialect) + "\"");
+  return replaced(keys.dialect == std::string("apt") ? replaced(machine, "\"none\"", "\"vectors\"") : machine,
+                  "[chain]", "[post]\n" + std::string(keys.lines) + "\n[chain]");
 }
 
 inline constexpr PostKeys kPostKeys[] = {
