@@ -76,6 +76,11 @@ std::optional<Made> made_of(const RexsFile& file, const Component& flank, const 
   if (cut.modified.size() > 7)
     refused.add(at_of(*step.settings, "modified_roll_coefficients"), "{} modified_roll_coefficients of {}, at most 7",
                 cut.modified.size(), step.settings->title());
+  for (const double coefficient : cut.modified)
+    if (!(std::abs(coefficient) <= 1000))
+      refused.add(at_of(*step.settings, "modified_roll_coefficients"),
+                  "modified_roll_coefficients = {:.10g} of {} is outside -1000 to 1000", coefficient,
+                  step.settings->title());
   while (!cut.modified.empty() && cut.modified.back() == 0) cut.modified.pop_back();
   cut.tilt_rad = radians(settings.optional("cutter_tilt", Unit::deg, {-45, 45, " deg"}).value_or(0));
   cut.swivel_rad = radians(settings.optional("cutter_swivel", Unit::deg, {-360, 360, " deg"}).value_or(0));

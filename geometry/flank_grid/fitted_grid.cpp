@@ -21,6 +21,7 @@ constexpr int kLeastTeeth = 5, kMostTeeth = 5000, kLeastPoints = 4, kMostPoints 
 constexpr double kMostRatio = 3;      // of neighbouring chords
 constexpr double kEndsOff = 0.005;    // mm: both ends of the teeth are square to one direction within it
 constexpr double kStraight = 1e-5;    // mm: points of a meridian that lie so close to its chord add nothing
+constexpr double kFarthest = 1e5;     // mm
 constexpr double kLeastFace = 0.01;   // mm
 constexpr double kLeastArc = 1;       // deg, of a fillet
 constexpr double kNearlyFlat = 1e-9;  // sine of a chart
@@ -134,7 +135,7 @@ class Fitting : public Refusals {
     for (const auto& [name, line] : {std::pair{"root", &gear_.root}, std::pair{"tip", &gear_.tip}}) {
       if (line->size() < 2) refuse(name, "{} has {} points, two or more are needed: its ends", name, line->size());
       for (const Vec2& p : *line)
-        if (!(p.x() > 0 && p.norm() < 1e5))
+        if (!(p.x() > 0 && p.norm() < kFarthest))
           refuse(name, "{}: r {:.6g} mm, z {:.6g} mm is no place beside the axis", name, p.x(), p.y());
     }
     for (const int side : {1, -1}) {
@@ -469,6 +470,8 @@ class Fitting : public Refusals {
     for (int i = 0; i < g.rows; ++i)
       for (int j = 0; j < g.columns; ++j) {
         const Vec3& p = g.place[g.index(i, j)];
+        if (!(p.norm() < kFarthest))
+          return refuse_point(side, i, j, "({:g}, {:g}, {:g}) mm is no place beside the axis", p.x(), p.y(), p.z());
         const Vec2 rz(radius(p), p.z());
         const double off = (rz - rz.cwiseMax(low).cwiseMin(high)).norm();
         if (!(off < room))

@@ -164,6 +164,8 @@ TEST(Rexs, RefusalsNameLineColumnAndWhatIsNeeded) {
       {kPair, "<ref id=\"13\" role=\"tool\"", "<ref id=\"13\" role=\"toll\"", 9,
        "bevel_gear_flank 10 (Gear left) has no bevel_gear_tool"},
       {kPair, "<ref id=\"9\" role=\"gear\"", "<ref id=\"9\" role=\"geer\"", 9, "bevel_gear 9 (Gear) has no flanks"},
+      {kPair, "<c>0</c>", "<c>1001</c>", 2,
+       "modified_roll_coefficients = 1001 of bevel_gear_manufacturing_settings 5 (Pinion concave) is outside -1000 to"},
       {kCylinders, ">65.7<", ">65.8<", 1,
        "root_diameter = 65.8 mm of cylindrical_gear 1 (Spur) is not what its tool makes, "
        "65.7 mm"},

@@ -291,6 +291,7 @@ TEST_F(FlankGrid, EveryLimitIsRefusedByItsKey) {
        [](auto& g) {
          for (auto& p : g.plus.place) p /= 25.4;
        }},
+      {"points", "(1e+308, 0, 0) mm is no place", [](auto& g) { g.plus.place[20] = Vec3(1e308, 0, 0); }},
       {"points", "ratio", [](auto& g) { g.plus.place[20] = 0.05 * g.plus.place[19] + 0.95 * g.plus.place[21]; }},
       {"points", "from the root to the tip",
        [&](auto& g) {
