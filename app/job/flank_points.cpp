@@ -122,7 +122,7 @@ Result<FlankPoints> parse_flank_points(std::string_view text, const std::string&
       continue;
     }
     const auto cells = inspection::number_cells(row);
-    if (std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.text.empty(); })) continue;
+    if (cells.empty()) continue;
     auto line = parse_grid_line(cells, count, at);
     if (!line) return line.error();
     lines.push_back(*line);

@@ -153,7 +153,7 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
       continue;
     }
     const auto cells = inspection::number_cells(row);
-    if (std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.text.empty(); })) continue;
+    if (cells.empty()) continue;
     auto line = parse_line(cells, number, file, gear.walls);
     if (!line) return line.error();
     lines.push_back(*line);

@@ -158,6 +158,7 @@ Result<PointFile> parse_plain_points(std::string_view text, const std::string& f
       }
     }
     const Cells cells = number_cells(line);
+    if (cells.empty()) continue;
     if (columns.count == 0)
       if (const auto counted = counted_columns(cells, number)) columns = *counted;
     if (cells.size() != columns.count) return wrong_count(cells, columns, number, file);

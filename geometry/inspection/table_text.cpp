@@ -108,6 +108,7 @@ std::vector<TableCell> number_cells(std::string_view line) {
     while (k < line.size() && is_blank(line[k]) && !in[k]) ++k;
     if (k < line.size() && parts(k)) ++k;
   }
+  while (!cells.empty() && cells.back().text.empty()) cells.pop_back();
   return cells;
 }
 

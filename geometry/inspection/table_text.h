@@ -21,7 +21,7 @@ struct TableCell {
 
 /// Cells of a line of numbers: semicolons part them; where there are none, blanks and single commas with blanks around
 /// them. Commas are decimal commas where semicolons stand in the line, or where blanks part it, every comma stands
-/// between two digits and no decimal point is there. An empty cell at the end is dropped.
+/// between two digits and no decimal point is there. Empty cells at the end are dropped.
 [[nodiscard]] std::vector<TableCell> number_cells(std::string_view line);
 
 /// A finite number, the whole text, with a decimal point or one decimal comma.

@@ -267,7 +267,8 @@ TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
   for (const std::string& text :
        {saved(",", true, false), saved(",", true, true), saved(";", false, false), saved(";", false, true),
         saved(";", true, true), saved("\t", false, true), saved("  ", false, false), saved(" ", false, true),
-        "sep=;\n" + saved(";", false, true), saved(";", false, true) + ";;;;;;;;;;\n"}) {
+        "sep=;\n" + saved(";", false, true), saved(";", false, true) + ";;;;;;;;;;\n",
+        replaced_all(saved(";", false, true), "\n", ";;\n")}) {
     ASSERT_TRUE(job::looks_like_grid(text)) << text.substr(0, 80);
     const auto read = job::parse_measured(text, "m.csv", *c.gear);
     ASSERT_TRUE(read) << text.substr(0, 80) << read.error().text();

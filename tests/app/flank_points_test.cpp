@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/files.h"
+
 namespace toothpath::test {
 namespace {
 
@@ -36,7 +38,8 @@ TEST(FlankPoints, AreReadAsSpreadsheetsSaveThem) {
     };
     for (const std::string& text :
          {saved(";", true, false), saved(";", true, true), saved("\t", false, false), saved(" ", false, true),
-          saved(",", true, true), "sep=;\n" + saved(";", true, false), saved(";", false, false) + ";;;;;\n"}) {
+          saved(",", true, true), "sep=;\n" + saved(";", true, false), saved(";", false, false) + ";;;;;\n",
+          replaced_all(plain(normals), "\n", ",,,\n")}) {
       const auto read = job::parse_flank_points(text, "p.csv");
       ASSERT_TRUE(read) << text.substr(0, 60) << read.error().text();
       EXPECT_EQ(read->plus.place, good->plus.place);

@@ -71,7 +71,7 @@ TEST(PlainPoints, WhatMachinesAndSpreadsheetsPutAroundTheNumbers) {
   for (const char* text :
        {"1 1.5 -2 3\n2 4 5 6\n", "P1\t1.5\t-2\t3\nP2\t4\t5\t6\n", "PT 01;1,5;-2;3\nPT 02;4;5;6\n",
         "\"1.5\",\"-2\",\"3\"\n\"4\",\"5\",\"6\"\n", "\"1,5\",\"-2,0\",\"3\"\n4,5,6\n", "1,5;-2;3\n4;5;6;\n",
-        "1,5 -2,0 3,00\n4,0 5,0 6,0\n", "sep=;\nX;Y;Z\n1,5;-2;3\n4;5;6\n",
+        "1,5 -2,0 3,00\n4,0 5,0 6,0\n", "sep=;\nX;Y;Z\n1,5;-2;3\n4;5;6\n", "X,Y,Z,,\n1.5,-2,3,,\n4,5,6,,\n,,,,\n",
         "Point;X [mm];Y [mm];Z [mm]\n1;1.5;-2;3\n2;4;5;6\n", "No. X(mm) Y(mm) Z(mm)\n1 1.5 -2 3\n2 4 5 6\n",
         "X [mm] Y [mm] Z [mm]\n1.5 -2 3\n4 5 6\n", "\"x/mm\",\"y/mm\",\"z/mm\"\n1.5,-2,3\n4,5,6\n",
         "Name\tX_mm\tY_mm\tZ_mm\na\t1.5\t-2\t3\nb\t4\t5\t6\n", "Z [cm];Y [cm];X [cm]\n0,3;-0,2;0,15\n0,6;0,5;0,4\n",
