@@ -22,7 +22,7 @@ std::string comment_text(std::string_view text) {
     else if (c == '(' || c == ')') out += c == '(' ? '[' : ']';
     else if (byte == 0xC3 && of_two) out += next == kSmallY ? "Y" : kLatin[next & 0x1FU];
     else if ((byte & 0xC0U) == 0x80U && at > 0 && static_cast<unsigned char>(text[at - 1]) >= 0x80U) continue;
-    else if (c == '%' || c == ';' || c < ' ' || c > '~') out += '?';
+    else if (c == '%' || c == ';' || c < ' ' || c >= '~') out += '?';
     else out += c;
     if (of_two) ++at;
   }

@@ -6,6 +6,7 @@
 // side.
 #include "postproc/controls/control.h"
 #include "postproc/controls/heidenhain/heidenhain_reader.h"
+#include "postproc/controls/heidenhain/lines.h"
 #include "postproc/controls/heidenhain/presets.h"
 #include "postproc/controls/work_offset.h"
 
@@ -119,7 +120,8 @@ Control heidenhain() {
           execute_heidenhain,
           false,
           std::nullopt,
-          probing::touch_probe_probing};
+          probing::touch_probe_probing,
+          heidenhain_acting_comment};
 }
 
 }  // namespace toothpath::controls

@@ -29,7 +29,8 @@ class Heidenhain {
  public:
   Heidenhain(std::string_view text, const std::string& file, const readback::NcControl& control,
              const readback::MoveSink& sink)
-      : file_(file),
+      : text_(text),
+        file_(file),
         control_(control),
         lines_(readback::lines_of(text)),
         joined_(join_lines(lines_)),
@@ -42,6 +43,7 @@ class Heidenhain {
   }
 
   Status run() {
+    if (auto bad = readback::no_acting_comment(text_, file_, heidenhain_acting_comment); !bad) return bad;
     if (auto bad = find_labels()) return *bad;
     while (!ended_) {
       if (pc_ >= lines_.size()) return place(lines_.size(), 0, "the program ends without END PGM");
@@ -76,7 +78,8 @@ class Heidenhain {
       readback::NcScanner s(heidenhain_code(lines_[i]));
       const auto n = s.number();
       if (!n || *n != static_cast<double>(i) || (s.at() != ' ' && s.at() != '\0'))
-        return place(i + 1, 1, fmt::format("block number {} expected", i));
+        return place(i + 1, 1,
+                     fmt::format("block number {} expected{}", i, lines_[i].empty() ? ", the line is empty" : ""));
       s.skip_blanks();
       if (!s.take("LBL ")) continue;
       const auto label = s.number();
@@ -609,6 +612,7 @@ class Heidenhain {
     return perform(behind);
   }
 
+  std::string_view text_;
   const std::string& file_;
   const readback::NcControl& control_;
   std::vector<std::string_view> lines_;

@@ -25,6 +25,15 @@ std::string_view heidenhain_code(std::string_view line) {
   return block ? code : line;
 }
 
+std::optional<readback::ActingComment> heidenhain_acting_comment(std::string_view line) {
+  const std::size_t last = line.find_last_not_of(" \t\r");
+  if (last == std::string_view::npos || line[last] != '~') return std::nullopt;
+  const std::size_t word = line.find_first_not_of("0123456789 \t"), begin = line[word] == '*' ? word : line.find(';');
+  if (begin == std::string_view::npos) return std::nullopt;
+  return readback::ActingComment{static_cast<int>(begin) + 1,
+                                 "comment that ends with ~: the control takes the next line for a part of this block"};
+}
+
 JoinedLines join_lines(std::vector<std::string_view>& lines) {
   JoinedLines out;
   if (std::none_of(lines.begin(), lines.end(), goes_on)) return out;

@@ -7,10 +7,15 @@
 #include <string_view>
 #include <vector>
 
+#include "postproc/readback/acting_comment.h"
+
 namespace toothpath::controls {
 
 /// The line up to the comment behind its block, without blanks at its end; the whole line where it is a comment.
 [[nodiscard]] std::string_view heidenhain_code(std::string_view line);
+
+/// A comment that ends with ~: the control takes the next line for a part of this block, whatever stands in it.
+[[nodiscard]] std::optional<readback::ActingComment> heidenhain_acting_comment(std::string_view line);
 
 /// What joining has made of lines: their texts, and where they stand in the file.
 struct JoinedLines {

@@ -83,6 +83,14 @@ TEST(ActingComments, SiemensSaysWhereTheTextIsFiled) {
   EXPECT_EQ(executed("siemens", "MSG(\"a; b\") ; $PATHS\n" + cut("siemens")).refused, "");
 }
 
+TEST(ActingComments, HeidenhainGoesOnInTheNextLine) {
+  for (const auto& [line, column] : {std::pair{"L X+6 F100 ; text ~", 15}, {"; text ~ ", 4}, {"* - text ~", 4}})
+    EXPECT_TRUE(holds(executed("heidenhain", std::string(line) + "\nL Z-9 F100\n").refused,
+                      fmt::format(":{}: error: comment that ends with ~: the control takes the next line", column)))
+        << executed("heidenhain", std::string(line) + "\nL Z-9 F100\n").refused;
+  EXPECT_EQ(executed("heidenhain", "; a ~ b\n" + cut("heidenhain")).refused, "");
+}
+
 TEST(ActingComments, AptHandsNoTextOn) {
   machines::Machine m = with_dialect(trunnion(), "apt");
   m.tcp = machines::TcpMode::vectors;
@@ -131,6 +139,8 @@ TEST(ActingComments, LinesOfAMachineFileHaveNone) {
         << d;
     EXPECT_EQ(complaints(d, [](auto& m) { m.post.own_lines.end = {"M9 (A; B)"}; }), "") << d;
   }
+  EXPECT_TRUE(holds(complaints("heidenhain", [](auto& m) { m.post.own_lines.start = {"; text ~"}; }),
+                    "post.start: \"; text ~\", column 1: comment that ends with ~"));
   EXPECT_TRUE(holds(complaints("siemens", [](auto& m) { m.post.own_lines.start = {";$PATH=/_N_MPF_DIR"}; }),
                     "post.start: \";$PATH=/_N_MPF_DIR\", column 1: comment ;$PATH="));
 }

@@ -59,6 +59,7 @@ TEST(Comment, IsAsciiByRule) {
                                                        {"ø25 × 3 ÷ 2", "OE25 X 3 X 2"},
                                                        {"Łódź 齿 €", "?OD? ? ?"},
                                                        {"a(b)%;\n\x7f", "A[B]????"},
+                                                       {"a ~", "A ?"},
                                                        {"\xc3", "?"},
                                                        {"\xff\xfe"
                                                         "a",
