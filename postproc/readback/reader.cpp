@@ -259,8 +259,26 @@ std::string too_many_blocks(std::size_t limit) {
   return fmt::format("more than {} executed blocks, the most for a program of this length: a loop without end", limit);
 }
 
+namespace {
+
+/// Marks and ends of lines that no control reads as an editor does.
+Status plain_lines(std::string_view text, const std::string& file) {
+  for (const std::string_view mark : {"\xef\xbb\xbf", "\xff\xfe", "\xfe\xff"})
+    if (text.starts_with(mark))
+      return fail_at({file, 1, 1}, "a byte order mark begins the text: save it as plain ASCII, without it");
+  for (std::size_t cr = text.find('\r'); cr != std::string_view::npos; cr = text.find('\r', cr + 1))
+    if (cr + 1 < text.size() && text[cr + 1] != '\n')
+      return fail_at({file, 1 + static_cast<int>(std::count(text.begin(), text.begin() + std::ptrdiff_t(cr), '\n')),
+                      static_cast<int>(cr - (text.rfind('\n', cr) + 1)) + 1},
+                     "the line ends with CR alone: save it with LF or CR LF at the ends of lines");
+  return Ok{};
+}
+
+}  // namespace
+
 Status execute_nc(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
   if (control.execute == nullptr) return fail("a control without a reader: its programs cannot be read back");
+  if (auto bad = plain_lines(text, file); !bad) return bad;
   const auto lines = std::count(text.begin(), text.end(), '\n');
   if (lines > kMostLines) return fail_at({file, 0, 0}, "the program has {} lines, more than {}", lines, kMostLines);
   NcControl bounded = control;

@@ -51,6 +51,9 @@ class Parser {
       else stop(i_, fmt::format("character {} is no part of a word", readback::shown_character(c)));
     }
     if (problem_) return *problem_;
+    auto& words = block_.words;
+    if (words.size() > 1 && words[0].letter == 'N' && (words[1].letter == '#' || words[1].letter == '<'))
+      words.erase(words.begin());  // the number of a line of assignments
     return std::move(block_);
   }
 

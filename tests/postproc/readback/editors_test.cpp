@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "tests/postproc/readback/hand_program.h"
+#include "tests/support/files.h"
 
 namespace toothpath::test::hand {
 namespace {
@@ -111,6 +112,35 @@ TEST(Editors, NumbersAheadOfOWords) {
       holds(end_of("linuxcnc", "o<foo> call\n"), "p:16:1: error: o<foo> has a name: it may stand for another file"));
   EXPECT_TRUE(holds(end_of("linuxcnc", "N10 o<foo> call [1]\n"), "p:16:5: error: o<foo> has a name"));
   EXPECT_TRUE(holds(end_of("fanuc", "/2 M0\nG1 X9. F100.\n"), "moves"));
+}
+
+TEST(Editors, NumbersAheadOfAssignments) {
+  for (const std::string d : {"linuxcnc", "fanuc", "haas"}) {
+    const std::string expected = end_of(d, "G1 X9. F100.\n");
+    EXPECT_EQ(end_of(d, "#101=9.\nG1 X#101 F100.\n"), expected) << d;
+    EXPECT_EQ(end_of(d, "N10 #101=9.\nN20 G1 X#101 F100.\n"), expected) << d;
+    EXPECT_TRUE(holds(end_of(d, "N10 G1 X6. F100. #101=9.\n"), "an assignment in a line of words")) << d;
+  }
+}
+
+TEST(Editors, MarksAndEndsOfLinesThatAreNotPlain) {
+  for (const std::string d : {"linuxcnc", "siemens", "heidenhain"}) {
+    const auto control = controls::control_of(machine_with(d), standing(), tools());
+    const auto refusal = [&](const std::string& text) {
+      const auto r = readback::execute_nc(text, "p", *control, [](const ExecutedMove&) {});
+      return r ? std::string() : r.error().text();
+    };
+    const std::string good = whole(d, cut(d));
+    EXPECT_EQ(refusal(replaced_all(good, "\n", "\r\n")), "") << d;
+    EXPECT_TRUE(holds(refusal("\xef\xbb\xbf" + good), "p:1:1: error: a byte order mark begins the text")) << d;
+    EXPECT_TRUE(holds(refusal(replaced_all(good, "\n", "\r")), "error: the line ends with CR alone")) << d;
+    EXPECT_TRUE(holds(refusal(good.substr(0, good.find('\n') + 1) + "ab\rc\n"), "p:2:3: error: the line ends")) << d;
+  }
+  const std::string text = replaced(whole("heidenhain", cut("heidenhain")), "\n", "\n\n");
+  const auto control = controls::control_of(machine_with("heidenhain"), standing(), tools());
+  const auto empty = readback::execute_nc(text, "p", *control, [](const ExecutedMove&) {});
+  ASSERT_FALSE(empty);
+  EXPECT_TRUE(holds(empty.error().text(), "p:2:1: error: block number 1 expected, the line is empty"));
 }
 
 // What is missing is said, and not what follows from it.
