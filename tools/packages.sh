@@ -1,7 +1,7 @@
 # Debian packages that Toothpath needs, and how to get those that are missing. Sourced by ./run and ./check.
 
 build_packages=(g++ cmake ninja-build libeigen3-dev libcgal-dev libassimp-dev libembree-dev libtbb-dev libfmt-dev
-  nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libboost-dev zlib1g-dev libssl-dev lib3mf-dev libtinygltf-dev libpugixml-dev)
+  nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libboost-dev zlib1g-dev libssl-dev lib3mf-dev libtinygltf-dev libpugixml-dev libceres-dev)
 test_packages=(libgtest-dev libbenchmark-dev calculix-ccx clang-format clang-tidy mold  # the browser: tools/get_page_tools.sh
   dpkg-dev file lintian mandoc zsh fish pybind11-dev python3-dev python3-numpy python3-matplotlib python3-jsonschema python3-tomli
   slurm-wlm parallel)

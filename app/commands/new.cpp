@@ -21,6 +21,7 @@
 #include "app/job/file.h"
 #include "app/job/flank_points.h"
 #include "app/job/job.h"
+#include "app/job/loose_points.h"
 #include "app/proposal/library_shelf.h"
 #include "app/proposal/points_gear.h"
 #include "app/proposal/propose.h"
@@ -58,15 +59,6 @@ std::vector<Diagnostic> usage(std::string message) {
 
 constexpr toml::Range kComponent{0, 1e9};
 constexpr toml::Range kRackCoefficient{0, 3};
-constexpr std::array<std::string_view, 2> kLengthUnits = {"mm", "inch"};
-
-/// A unit as an option says it. Refused (kind usage): another one.
-Result<std::optional<double>> unit_said(const char* option, const std::string& unit) {
-  if (unit.empty()) return std::optional<double>();
-  if (std::find(kLengthUnits.begin(), kLengthUnits.end(), unit) == kLengthUnits.end())
-    return fail_as(DiagnosticKind::usage, "{} = {} is neither mm nor inch", option, printable(unit));
-  return mm_of_unit(unit);
-}
 
 using DoneOrErrors = Expected<Ok, std::vector<Diagnostic>>;
 
@@ -292,7 +284,7 @@ DoneOrErrors wish_number(Wishes& wishes, const Question& question, std::optional
 /// The points of --points, or of a file that is asked for.
 Expected<proposal::PointsOfFile, std::vector<Diagnostic>> choose_points(const NewRequest& request,
                                                                         const Dialog& dialog) {
-  const auto unit = unit_said("--points-unit", request.points_unit);
+  const auto unit = job::read_point_unit("--points-unit", request.points_unit);
   if (!unit) return std::vector{unit.error()};
   std::string file = request.points;
   if (file.empty() && !dialog.asks())
@@ -316,7 +308,7 @@ DoneOrErrors ask_unit(proposal::PointsOfFile& points, double teeth, const Dialog
   if (!why) return Ok{};
   if (!dialog.asks()) return usage(fmt::format("--points-unit is missing, mm or inch: {}", *why));
   dialog.tell({{"unit of the points", *why}});
-  const auto word = dialog.word("--points-unit", "unit of x, y and z", "", kLengthUnits);
+  const auto word = dialog.word("--points-unit", "unit of x, y and z", "", job::kPointUnits);
   if (auto* errors = word.refused()) return *errors;
   auto read = proposal::read_points(points.file, mm_of_unit(word.value()));
   if (!read) return std::vector{read.error()};
@@ -670,7 +662,7 @@ DoneOrErrors choose_tools(const NewRequest& request, const Dialog& dialog, Choic
     return usage("--tool says what a tool library does not, and --tools names none");
   if (!library_file && !request.unit.empty())
     return usage("--library-unit is the unit of a tool library, and --tools names none");
-  if (const auto unit = unit_said("--library-unit", request.unit); !unit) return std::vector{unit.error()};
+  if (const auto unit = job::read_point_unit("--library-unit", request.unit); !unit) return std::vector{unit.error()};
   const bool used = choice.wishes.route == proposal::Route::ball || choice.wishes.route == proposal::Route::line;
   if (request.tools.empty() || !used) return Ok{};
   if (!library_file) {
@@ -811,7 +803,7 @@ void new_options(OptionSet& set, NewRequest& request) {
            "tools instead of standard sizes: those of a job, or of a tool library of LinuxCNC, Fusion or FreeCAD",
            "FILE");
   set.word("--library-unit", request.unit, "unit of the lengths for which a tool library states none", "UNIT",
-           kLengthUnits);
+           job::kPointUnits);
   set.texts("--tool", request.said, "what a tool library does not say of a tool: \"12: stick_out = 40, teeth = 2\"",
             "NUMBER:KEYS");
   for (const Question& question : proposal::questions()) {
@@ -822,7 +814,7 @@ void new_options(OptionSet& set, NewRequest& request) {
   set.text("--points", request.points,
            "a gear by points: a file of x y z[ i j k] of both flanks of one space, in any order", "FILE");
   set.word("--points-unit", request.points_unit, "unit of x, y and z for which the file states none", "UNIT",
-           kLengthUnits);
+           job::kPointUnits);
   set.text("--tip", request.tip,
            "its tip surface in the meridian, where not through the last rows of points: r z at both ends",
            "[[R, Z], [R, Z]]");

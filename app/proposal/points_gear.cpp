@@ -4,79 +4,26 @@
 #include <array>
 #include <cmath>
 
-#include "app/job/flank_points.h"
-#include "app/job/measured_points.h"
+#include "app/job/loose_points.h"
 #include "geometry/base/length_unit.h"
 #include "geometry/base/printable.h"
-#include "geometry/inspection/point_file.h"
 #include "geometry/inspection/table_text.h"
-#include "machines/toml/input_text.h"
 
 namespace toothpath::proposal {
 namespace {
 
-constexpr std::size_t kMostPointBytes = 64u << 20;
 constexpr double kSmallModule = 0.5;     // mm: below it inches are likelier
 constexpr double kFilletModules = 0.25;  // of the proposed fillet,
 constexpr double kFilletOfWidth = 0.4;   // at most this share of the space
-constexpr double kFarthest = 1e5;        // mm
-
-using Loose = std::vector<flank_grid::LoosePoint>;
-
-/// Of a points file of a job, which names flank, row and column of every point.
-void add_named(const flank_grid::GridPoints& grid, int side, const std::string& file, Loose& out) {
-  for (std::size_t k = 0; k < grid.place.size(); ++k) {
-    out.push_back({grid.place[k], {}, {file, grid.line[k], 1}, side});
-    if (!grid.normal.empty()) out.back().n = grid.normal[k];
-  }
-}
-
-Result<Loose> loose_of(const inspection::PointFile& read) {
-  Loose out;
-  for (const inspection::FilePoint& point : read.points) {
-    if (point.n.has_value() != read.points.front().n.has_value())
-      return fail_at(point.at, "the point {} a normal, and the first one of the file {}: all or none need one",
-                     point.n ? "has" : "lacks", point.n ? "lacks it" : "has one");
-    out.push_back({point.p, point.n, point.at, 0});
-  }
-  return out;
-}
 
 }  // namespace
 
 Result<PointsOfFile> read_points(const std::string& file, std::optional<double> unit_mm) {
-  const auto text = toml::read_input_text(file, kMostPointBytes);
-  if (!text) return text.error();
-  Loose points;
-  std::optional<double> stated;
-  if (job::looks_like_flank_points(*text)) {
-    const auto named = job::parse_flank_points(*text, file);
-    if (!named) return named.error();
-    add_named(named->plus, 1, file, points);
-    add_named(named->minus, -1, file, points);
-  } else {
-    const auto read = inspection::looks_like_dmis(*text) ? inspection::parse_dmis_results(*text, file)
-                                                         : inspection::parse_plain_points(*text, file);
-    if (!read) return read.error();
-    auto loose = loose_of(*read);
-    if (!loose) return loose.error();
-    points = std::move(*loose);
-    stated = read->unit_mm;
-  }
-  if (unit_mm && stated && *unit_mm != *stated)
-    return Diagnostic{
-        DiagnosticKind::usage,
-        {},
-        fmt::format("--points-unit is {:g} mm, but {} states a unit of {:g} mm", *unit_mm, printable(file), *stated)};
-  for (flank_grid::LoosePoint& point : points) {
-    if (!stated) point.p *= unit_mm.value_or(1);
-    if (!(radius(point.p) > 0 && point.p.norm() < kFarthest))
-      return fail_at(point.at, "({:g}, {:g}, {:g}) mm is no place beside the axis", point.p.x(), point.p.y(),
-                     point.p.z());
-  }
-  auto ordered = flank_grid::order_points(points);
+  const auto loose = job::read_loose_points(file, unit_mm);
+  if (!loose) return loose.error();
+  auto ordered = flank_grid::order_points(loose->points);
   if (!ordered) return ordered.error();
-  return PointsOfFile{file, stated.has_value() || unit_mm.has_value(), std::move(*ordered)};
+  return PointsOfFile{file, loose->states_unit, std::move(*ordered)};
 }
 
 std::optional<std::string> looks_like_inches(const PointsOfFile& points, double teeth) {

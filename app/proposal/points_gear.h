@@ -14,9 +14,8 @@ struct PointsOfFile {
   flank_grid::OrderedPoints points;
 };
 
-/// Reads DMIS results, lists of x y z (geometry/inspection/point_file.h) and the points file of a job, and orders them.
+/// Reads the points of a file (app/job/loose_points.h) and orders them. Refused: what reading and ordering refuse.
 /// @param unit_mm  of x, y, z as somebody says it; nothing: as the file says it, else mm
-/// Refused: what the readers and the ordering refuse; a unit that the file states otherwise (kind usage).
 [[nodiscard]] Result<PointsOfFile> read_points(const std::string& file, std::optional<double> unit_mm);
 
 /// Whether a gear of so many teeth is so small in mm that x, y, z may be in inches; then why.

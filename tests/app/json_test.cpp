@@ -207,7 +207,7 @@ TEST(JsonOfCorrect, SaysWhatWasMeasuredAndWhatIsLeft) {
 /// Every command of the help is one of those above, or one whose own test reads its JSON.
 TEST(JsonOfCommands, AreAllAsked) {
   const std::string help = run_program(Words{"--help"}).out;
-  for (const char* command : {"new", "run", "check", "correct", "surface", "shaper", "cutter", "forces", "contact",
+  for (const char* command : {"new", "fit", "run", "check", "correct", "surface", "shaper", "cutter", "forces", "contact",
                               "compare", "probe", "study", "machine", "reference"})
     EXPECT_NE(help.find(std::string("\n  ") + command + " "), std::string::npos) << command;
   const auto at = help.find("Subcommands:");
@@ -215,7 +215,7 @@ TEST(JsonOfCommands, AreAllAsked) {
   std::size_t commands = 0;
   for (std::size_t line = help.find('\n', at) + 1; help.compare(line, 2, "  ") == 0; line = help.find('\n', line) + 1)
     commands += help[line + 2] != ' ' ? 1 : 0;
-  EXPECT_EQ(commands, 14U) << help;
+  EXPECT_EQ(commands, 15U) << help;
 }
 
 }  // namespace

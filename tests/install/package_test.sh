@@ -20,7 +20,7 @@ kinds=(usr/bin/toothpath usr/share/man/man1/toothpath.1.gz usr/share/bash-comple
   usr/share/zsh/vendor-completions/_toothpath usr/share/fish/vendor_completions.d/toothpath.fish
   usr/share/doc/toothpath/README.md usr/share/doc/toothpath/copyright usr/share/doc/toothpath/changelog.gz
   'usr/share/doc/toothpath/docs/.*' 'usr/share/doc/toothpath/samples/.*\.(toml|md|slurm|sh)' 'usr/share/toothpath/machines/[a-z0-9_]*\.toml'
-  'usr/share/toothpath/schema/[a-z]*\.schema\.json')
+  'usr/share/toothpath/schema/[a-z]*\.schema\.json' usr/lib/toothpath/toothpath_least_squares.so)
 files=$(dpkg-deb --fsys-tarfile "$program" | tar t | sed 's|^\./||' | grep -v '/$')
 for kind in "${kinds[@]}"; do grep -qxE "$kind" <<<"$files" || fail "no $kind in the package"; done
 others=$(grep -vxE "$(IFS='|'; echo "${kinds[*]}")" <<<"$files" || true)
@@ -52,6 +52,9 @@ zcat "$root/usr/share/man/man1/toothpath.1.gz" | cmp -s - <("$installed" man-pag
 zcat "$root/usr/share/doc/toothpath/changelog.gz" | dpkg-parsechangelog -l - -S Version | grep -qx "$(dpkg-deb -f "$program" Version)" || fail "changelog"
 "$installed" run "$root/usr/share/doc/toothpath/samples/spur_quick.toml" --out "$work/out" --quiet || fail "the sample"
 [[ -s $work/out/program.ngc && -s $work/out/report.html ]] || fail "no program and report of the sample"
+spur=$root/usr/share/doc/toothpath/samples/cylindrical_spur.toml
+{ "$installed" surface "$spur" --out "$work/spur" --quiet && "$installed" fit "$spur" --points "$work/spur/inspection.csv" --out "$work/fit" --quiet; } ||
+  fail "the installed program does not open its library of least squares"
 
 # What an editor is told in the first line of the files that people copy and of those that `new` writes is there.
 "$installed" new --gear face --cut shaped --machine y514 --teeth 60 --module 2 -o "$work/new.toml" --quiet || fail "new"
