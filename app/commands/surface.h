@@ -13,6 +13,7 @@ namespace toothpath::commands {
 /// With files for other programs, as far as they are asked for.
 struct SurfaceRequest : JobRequest {
   cad::FilesAsked cad;
+  std::string rexs_file;  ///< the gear as REXS; empty: not asked
 };
 /// --step, --3mf, --gltf, --stock.
 void cad_options(OptionSet& set, cad::FilesAsked& asked);

@@ -8,6 +8,7 @@
 
 #include "app/rexs/quantities.h"
 #include "app/rexs/rexs_file.h"
+#include "geometry/base/refusal.h"
 #include "geometry/cylindrical/parameters.h"
 #include "geometry/spiral_bevel/parameters.h"
 
@@ -38,6 +39,21 @@ struct Obstacles {
 [[nodiscard]] std::vector<const Component*> gears_of(const RexsFile& file);
 
 [[nodiscard]] Expected<GearOfFile, Obstacles> gear_of(const RexsFile& file, const Component& gear, const Said& said);
+
+/// What of a gear has no place in a file, or stands there otherwise: told to whoever writes it.
+struct Written {
+  RexsFile file;
+  std::vector<std::string> notes = {};
+};
+/// Gear, flanks, tools and settings of one gear, as gear_of() reads them back; a bevel gear with two cuts has its
+/// concave flank as the left one. Refused, with the key within [gear]: what REXS has no components for.
+[[nodiscard]] Expected<Written, Refusal> rexs_of(const cylindrical::CylindricalParameters& gear,
+                                                 const std::string& name);
+[[nodiscard]] Expected<Written, Refusal> rexs_of(const spiral_bevel::SpiralBevelParameters& gear,
+                                                 const std::string& name);
+/// Puts the points and normals of inspection.csv to the flanks, under names of our own ("custom_.."): the schema has
+/// none for them.
+void add_flank_grid(RexsFile& file, std::string_view inspection_csv);
 
 // Parts of it, a file each.
 [[nodiscard]] cylindrical::CylindricalParameters cylindrical_of(const RexsFile& file, const Component& gear,

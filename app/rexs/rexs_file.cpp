@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <pugixml.hpp>
+#include <sstream>
 
 #include "geometry/base/printable.h"
 #include "machines/toml/input_text.h"
@@ -138,6 +139,48 @@ const Reference* Relation::role(std::string_view name) const {
 const Component* RexsFile::find(int id) const {
   const auto found = std::find_if(components.begin(), components.end(), [&](const Component& c) { return c.id == id; });
   return found == components.end() ? nullptr : &*found;
+}
+
+std::string rexs_text(const RexsFile& file) {
+  pugi::xml_document document;
+  pugi::xml_node head = document.append_child(pugi::node_declaration);
+  head.append_attribute("version") = "1.0";
+  head.append_attribute("encoding") = "UTF-8";
+  pugi::xml_node model = document.append_child("model");
+  model.append_attribute("version") = "1.7";
+  model.append_attribute("applicationId") = "Toothpath";
+  pugi::xml_node relations = model.append_child("relations"), components = model.append_child("components");
+  int number = 0;
+  for (const Relation& relation : file.relations) {
+    pugi::xml_node node = relations.append_child("relation");
+    node.append_attribute("id") = ++number;
+    node.append_attribute("type") = relation.type.c_str();
+    if (relation.order > 0) node.append_attribute("order") = relation.order;
+    for (const Reference& ref : relation.refs) {
+      pugi::xml_node one = node.append_child("ref");
+      one.append_attribute("id") = ref.id;
+      one.append_attribute("role") = ref.role.c_str();
+      one.append_attribute("hint") = file.find(ref.id)->type.c_str();
+    }
+  }
+  for (const Component& component : file.components) {
+    pugi::xml_node node = components.append_child("component");
+    node.append_attribute("id") = component.id;
+    node.append_attribute("type") = component.type.c_str();
+    node.append_attribute("name") = component.name.c_str();
+    for (const Attribute& attribute : component.attributes) {
+      pugi::xml_node one = node.append_child("attribute");
+      one.append_attribute("id") = attribute.id.c_str();
+      one.append_attribute("unit") = attribute.unit.c_str();
+      if (attribute.cells.empty()) one.append_child(pugi::node_pcdata).set_value(attribute.text.c_str());
+      else
+        for (pugi::xml_node list = one.append_child("array"); const std::string& cell : attribute.cells)
+          list.append_child("c").append_child(pugi::node_pcdata).set_value(cell.c_str());
+    }
+  }
+  std::ostringstream out;
+  document.save(out, "  ", pugi::format_indent, pugi::encoding_utf8);
+  return out.str();
 }
 
 Result<RexsFile> parse_rexs(std::string_view text, const std::string& file) { return Reading(text, file).run(); }

@@ -54,4 +54,7 @@ struct RexsFile {
 [[nodiscard]] Result<RexsFile> parse_rexs(std::string_view text, const std::string& file);
 [[nodiscard]] Result<RexsFile> read_rexs(const std::string& file);
 
+/// The same as XML, of version 1.7. The same components, the same bytes: there is no date.
+[[nodiscard]] std::string rexs_text(const RexsFile& file);
+
 }  // namespace toothpath::rexs

@@ -139,7 +139,8 @@ std::optional<double> space_width(const Quantities& q, const SpiralBevelParamete
 void take_shaft_angle(const RexsFile& file, const Component& gear, SpiralBevelParameters& p, Refused& refused) {
   for (const Relation& relation : file.relations) {
     const Reference *stage = relation.role("stage"), *one = relation.role("gear_1"), *two = relation.role("gear_2");
-    if (relation.type != "stage" || !stage || !one || !two || (one->id != gear.id && two->id != gear.id)) continue;
+    const bool ours = (one && one->id == gear.id) || (two && two->id == gear.id);
+    if (relation.type != "stage" || !stage || !ours) continue;
     const Quantities q(*file.find(stage->id), refused);
     if (const auto angle = q.optional("shaft_angle", Unit::deg, {20, 160, " deg"})) p.shaft_angle_rad = radians(*angle);
   }

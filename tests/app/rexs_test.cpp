@@ -200,5 +200,113 @@ TEST(Rexs, RefusalsNameLineColumnAndWhatIsNeeded) {
   EXPECT_NE(errors_of(made("", 1)).find("no XML"), std::string::npos);
 }
 
+/// Written and read again.
+template <typename Gear>
+Gear there_and_back(const Gear& gear, const rexs::Said& said = {}) {
+  auto written = rexs::rexs_of(gear, "a <gear> & its \"mate\"");
+  if (!written) ADD_FAILURE() << written.error().diagnostic.message;
+  if (!written) return {};
+  rexs::add_flank_grid(written->file,
+                       "zone,flank,row,column,x,y,z,i,j,k\n0,1,0,0,1.5,2,3,1,0,0\n0,-1,0,0,1.5,-2,3,1,0,0\n");
+  const std::string text = rexs::rexs_text(written->file);
+  const auto file = rexs::parse_rexs(text, "g.rexs");
+  if (!file) ADD_FAILURE() << file.error().text() << text;
+  if (!file) return {};
+  EXPECT_EQ(rexs::rexs_text(*file), text);
+  const auto gears = rexs::gears_of(*file);
+  EXPECT_EQ(gears.size(), 1u);
+  EXPECT_EQ(gears[0]->name, "a <gear> & its \"mate\"");
+  auto read = rexs::gear_of(*file, *gears[0], said);
+  EXPECT_TRUE(read) << errors_of(read);
+  return read ? std::get<Gear>(read->gear) : Gear{};
+}
+
+constexpr double kDigits = 1e-13;
+
+TEST(Rexs, ASpiralBevelGearIsReadBackAsItWasWritten) {
+  const std::string text = text_of("bevel_pair.rexs");
+  for (const int component : {2, 9}) {
+    const rexs::Said said{component == 2 ? std::optional(true) : std::nullopt, {}, {}, {}};
+    auto p = std::get<spiral_bevel::SpiralBevelParameters>(made(text, component, said)->gear);
+    p.shaft_angle_rad = radians(85);
+    p.tip_apex_mm = 0.3;
+    p.cuts.back().modified = {0.01, -0.2};
+    p.cuts.front().tilt_rad = radians(2);
+    p.cuts.front().swivel_rad = radians(-30);
+    const auto q = there_and_back(p, said);
+    EXPECT_EQ(q.teeth, p.teeth);
+    EXPECT_EQ(q.hand, p.hand);
+    EXPECT_EQ(q.mean_space_width_mm.has_value(), p.mean_space_width_mm.has_value());
+    const auto near = [](double a, double b) { EXPECT_NEAR(a, b, kDigits * std::max(1.0, std::abs(b))); };
+    near(q.shaft_angle_rad, p.shaft_angle_rad);
+    near(q.pitch_angle_rad, p.pitch_angle_rad);
+    near(q.outer_cone_distance_mm, p.outer_cone_distance_mm);
+    near(q.face_width_mm, p.face_width_mm);
+    near(q.tip_angle_rad, p.tip_angle_rad);
+    near(q.tip_apex_mm, p.tip_apex_mm);
+    near(q.root_angle_rad.value_or(0), p.root_angle_rad.value_or(0));
+    near(q.mean_space_width_mm.value_or(0), p.mean_space_width_mm.value_or(0));
+    ASSERT_EQ(q.cuts.size(), p.cuts.size());
+    for (std::size_t c = 0; c < p.cuts.size(); ++c) {
+      const auto &a = q.cuts[c], &b = p.cuts[c];
+      EXPECT_EQ(a.flank, b.flank);
+      EXPECT_EQ(a.generated, b.generated);
+      EXPECT_EQ(a.modified, b.modified);
+      for (std::size_t k = 0; k < 2; ++k) {
+        near(a.blades[k].point_radius_mm, b.blades[k].point_radius_mm);
+        near(a.blades[k].pressure_angle_rad, b.blades[k].pressure_angle_rad);
+        near(a.blades[k].edge_radius_mm, b.blades[k].edge_radius_mm);
+      }
+      near(a.radial_distance_mm, b.radial_distance_mm);
+      near(a.cradle_angle_rad, b.cradle_angle_rad);
+      near(a.root_angle_rad, b.root_angle_rad);
+      near(a.work_offset_mm, b.work_offset_mm);
+      near(a.sliding_base_mm, b.sliding_base_mm);
+      near(a.machine_center_mm, b.machine_center_mm);
+      near(a.ratio_of_roll, b.ratio_of_roll);
+      near(a.tilt_rad, b.tilt_rad);
+      near(a.swivel_rad, b.swivel_rad);
+    }
+  }
+}
+
+TEST(Rexs, ACylindricalGearIsReadBackAsItWasWritten) {
+  cylindrical::CylindricalParameters p;
+  p.teeth = 31;
+  p.module_mm = 3;
+  p.pressure_angle_rad = radians(21);
+  p.profile_shift = 0.17;
+  p.dedendum_coefficient = 1.31;
+  p.root_radius_coefficient = 0.33;
+  p.tip_diameter_mm = 107.5;
+  p.thickness_allowance_mm = -0.08;
+  p.bore_diameter_mm = 30;
+  p.zones = {{radians(-18), -11, 11}};
+  for (const ModulePlane plane : {ModulePlane::normal, ModulePlane::transverse}) {
+    p.module_plane = plane;
+    const auto q = there_and_back(p);
+    // The rack of a transverse reading, in its normal plane.
+    const double k = plane == ModulePlane::normal ? 1 : std::cos(radians(18));
+    const auto near = [](double a, double b) { EXPECT_NEAR(a, b, kDigits * std::max(1.0, std::abs(b))); };
+    EXPECT_EQ(q.teeth, p.teeth);
+    near(q.module_mm, p.module_mm * k);
+    near(std::tan(q.pressure_angle_rad), std::tan(p.pressure_angle_rad) * k);
+    near(q.profile_shift, p.profile_shift / k);
+    near(q.dedendum_coefficient, p.dedendum_coefficient / k);
+    near(q.root_radius_coefficient, p.root_radius_coefficient / k);
+    near(*q.tip_diameter_mm, *p.tip_diameter_mm);
+    near(q.thickness_allowance_mm, p.thickness_allowance_mm);
+    near(q.bore_diameter_mm, p.bore_diameter_mm);
+    ASSERT_EQ(q.zones.size(), 1u);
+    near(q.zones[0].helix_angle_rad, p.zones[0].helix_angle_rad);
+    near(q.zones[0].from_mm, -11);
+    near(q.zones[0].to_mm, 11);
+  }
+  p.zones.push_back({radians(18), 12, 20});
+  const auto two = rexs::rexs_of(p, "two");
+  ASSERT_FALSE(two);
+  EXPECT_EQ(two.error().key, "zone");
+}
+
 }  // namespace
 }  // namespace toothpath::test
