@@ -315,7 +315,7 @@ Places places_of(const Placing& placing) {
   return out;
 }
 
-/// The start, turned and moved as well as that is free: what it leaves of every point.
+/// The start, turned as well as that is free: what it leaves of every point.
 Status note_before(Problem& problem, Fitted& out, std::map<std::size_t, double>& left) {
   std::vector<std::size_t> pose;
   for (std::size_t k = 0; k < problem.parameters.size(); ++k)

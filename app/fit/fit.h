@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "app/fit/placing.h"
-#include "geometry/base/work_share.h"
 
 namespace toothpath::fit {
 
@@ -52,7 +51,7 @@ struct Fitted {
   Placing placing;  ///< on the fitted gear
   Pose pose;        ///< of the part
   std::vector<double> before_mm,
-      after_mm;  ///< of every placed point; before: the start, turned and moved as far as is free
+      after_mm;  ///< of every placed point; before: the start, turned where that is free
   Size before, after;
   Numbers numbers;
   Gear gear;

@@ -191,6 +191,37 @@ TEST(Fit, TheSettingsOfASpiralBevelPinionComeBack) {
   EXPECT_GE(determined, 8);
 }
 
+TEST(Fit, TheWheelOfOneCutComesBack) {
+  job::Job truth = job_of(sample("spiral_bevel.toml"));
+  auto& gear = std::get<spiral_bevel::SpiralBevelParameters>(truth.gear);
+  gear.teeth = 36;
+  gear.hand = 1;
+  gear.pitch_angle_rad = radians(71.5666666);
+  gear.tip_angle_rad = radians(73.1333332);
+  gear.root_angle_rad = radians(67.683333267);
+  gear.mean_space_width_mm.reset();
+  spiral_bevel::Cut cut;
+  cut.blades = {spiral_bevel::Blade{77.0255, radians(22), 0.7}, spiral_bevel::Blade{75.3745, radians(22), 0.7}};
+  cut.radial_distance_mm = 72.642731192;
+  cut.cradle_angle_rad = radians(59.2342023);
+  cut.root_angle_rad = *gear.root_angle_rad;
+  cut.ratio_of_roll = 1.051674445;
+  gear.cuts = {cut};
+  job::Job start = truth;
+  auto& other = std::get<spiral_bevel::SpiralBevelParameters>(start.gear).cuts[0];
+  other.radial_distance_mm = 72.4;
+  other.ratio_of_roll = 1.055;
+  other.work_offset_mm = 0.3;
+  other.blades[0].pressure_angle_rad = radians(22.4);
+  const auto fitted = fit::fit_gear(start, points_of(truth, {0.02}), {});
+  ASSERT_TRUE(fitted) << fitted.error().text();
+  SCOPED_TRACE(told(*fitted));
+  EXPECT_LT(fitted->after.worst_mm, 1e-7);
+  for (const char* key : {"cut[0].blade_pressure_angle[0]", "cut[0].blade_point_radius[1]", "cut[0].radial_distance",
+                          "cut[0].ratio_of_roll", "cut[0].work_offset"})
+    EXPECT_NEAR(row(*fitted, key).value, number_of(truth, *fitted, key), 1e-6) << key;
+}
+
 TEST(Fit, WhatIsNoneIsRefused) {
   const job::Job spur = job_of(sample("cylindrical_spur.toml")), grid = job_of(sample("flank_grid_spur.toml"));
   const auto points = points_of(spur);
