@@ -11,6 +11,7 @@
 
 #include "postproc/readback/program_hash.h"
 #include "tests/postproc/text/post_forms.h"
+#include "tests/support/files.h"
 
 namespace toothpath {
 namespace {
