@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -115,10 +116,10 @@ std::vector<path::ToolMotion> first_in_space_0(const std::vector<path::ToolMotio
   return in_space_0(std::move(own), teeth);
 }
 
-PlanAnew planned_once(std::function<PlannedMotions()> plan) {
+PlanAnew planned_once(std::function<PlannedMotions(std::size_t)> plan) {
   const auto kept = std::make_shared<std::optional<PlannedMotions>>();
-  return [plan = std::move(plan), kept]() -> const PlannedMotions& {
-    if (!*kept) *kept = plan();
+  return [plan = std::move(plan), kept](std::size_t operations) -> const PlannedMotions& {
+    if (!*kept) *kept = plan(operations);
     return **kept;
   };
 }
@@ -128,6 +129,14 @@ bool LoadJudge::asks_plan(std::size_t n) const {
   const path::OperationType type = q_.job.operations[n].type;
   return n > 0 && type != path::OperationType::roughing && type != path::OperationType::finger_roughing &&
          !(q_.stock_before_mm[n] < INFINITY);
+}
+
+/// The side of a mill is not planned for itself: that takes as long as all the rest.
+std::size_t LoadJudge::planned_operations() const {
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < q_.mills.size(); ++n)
+    if (asks_plan(n)) count = q_.job.operations[n].type == path::OperationType::line_milling ? n : n + 1;
+  return count;
 }
 
 double LoadJudge::planned_stock(std::span<const path::ToolMotion> plan, std::size_t of) const {
@@ -196,17 +205,18 @@ void LoadJudge::judge(std::span<const path::ToolMotion> one_space, std::vector<s
 
 void LoadJudge::judge_by_plan(std::span<const path::ToolMotion> one_space, std::vector<std::string>& reasons,
                               std::vector<std::string>& warnings) const {
-  bool any = false;
-  for (std::size_t n = 0; n < q_.mills.size(); ++n) any = any || asks_plan(n);
-  if (!any || !q_.plan || !reasons.empty()) return;
-  const PlannedMotions& planned = q_.plan();
+  const std::size_t count = planned_operations();
+  if (count == 0 || !q_.plan || !reasons.empty()) return;
+  const PlannedMotions& planned = q_.plan(count);
   if (!planned) {
     const std::string why =
         "what operations leave for later ones is judged by the job alone, it has no plan: " + planned.error().message;
     if (std::find(warnings.begin(), warnings.end(), why) == warnings.end()) warnings.push_back(why);
     return;
   }
-  const std::span<const path::ToolMotion> plan = *planned;
+  std::vector<path::ToolMotion> plan = *planned;
+  std::copy_if(one_space.begin(), one_space.end(), std::back_inserter(plan),
+               [&](const path::ToolMotion& m) { return m.operation >= int(count); });
   bool as_planned = true;
   for_operations(one_space, q_, [&](std::size_t n, const auto& motions, const cut::EngagementQuery& query) {
     as_planned = as_planned && same_cuts(motions, of_operation(plan, n), q_.bodies[n].cutting.back().core.to);
@@ -217,6 +227,35 @@ void LoadJudge::judge_by_plan(std::span<const path::ToolMotion> one_space, std::
     if (reasons.empty()) judge_engagement(plan, n, motions, query, reasons);
     return true;
   });
+}
+
+LoadedOtherwise::LoadedOtherwise(const ProgramProof& program, const GearCheck& gear) : gear_(gear) {
+  if (program.others_text) firsts_ = first_teeth(program.motions);
+}
+
+void LoadedOtherwise::see(const std::vector<path::ToolMotion>& motions, std::span<const proof::LikeMotion> likes) {
+  if (firsts_.empty()) return;
+  auto like = likes.begin();
+  for (std::size_t k = 0; k < motions.size(); ++k) {
+    const path::ToolMotion& m = motions[k];
+    if (like != likes.end() && like->motion == k) ++like;
+    else if (!m.rapid && m.tooth != firsts_.at(m.operation) && !teeth_.contains(m.tooth) && gear_.may_cut(m))
+      teeth_.insert(m.tooth);
+  }
+}
+
+void LoadedOtherwise::judge(ProgramProof& program, const LoadJudge& load) const {
+  std::size_t refused = 0;
+  for (auto& [tooth, cuts] : cuts_of(program, teeth_)) {
+    if (refused > kTeethTold) break;  // it is not verified at any rate
+    std::vector<std::string> reasons;
+    const std::vector<path::ToolMotion> own = in_space_0(std::move(cuts), gear_.teeth());
+    load.judge(own, reasons);
+    if (program.reasons.empty()) load.judge_by_plan(own, reasons, program.warnings);
+    if (!reasons.empty() && ++refused <= kTeethTold)
+      for (const std::string& reason : reasons) program.reasons.push_back(fmt::format("tooth {}: {}", tooth, reason));
+  }
+  if (refused > kTeethTold) program.reasons.emplace_back("so it is with more teeth");
 }
 
 }  // namespace toothpath::process

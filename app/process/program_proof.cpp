@@ -538,6 +538,21 @@ void with_all_motions(ProgramProof& program,
   work(all, alike);
 }
 
+std::map<int, std::vector<path::ToolMotion>> cuts_of(ProgramProof& program, const std::set<int>& teeth) {
+  std::map<int, std::vector<path::ToolMotion>> cuts;
+  const auto take = [&](const std::vector<path::ToolMotion>& motions) {
+    for (const path::ToolMotion& m : motions)
+      if (!m.rapid && teeth.contains(m.tooth)) cuts[m.tooth].push_back(m);
+  };
+  if (!program.each_tooth) {
+    take(program.motions);
+  } else if (!teeth.empty()) {
+    const Status made = program.each_tooth(TeethWanted::cuts, [&](auto&& motions, auto, bool) { take(motions); });
+    if (!made) program.reasons.push_back(made.error().message);
+  }
+  return cuts;
+}
+
 Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths& asked, GearCheck& gear,
                                    app::StageClock& clock) {
   auto read = read_program(program, asked, gear, clock);

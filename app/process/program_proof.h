@@ -6,7 +6,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -119,6 +121,12 @@ class GearCheck {
 /// being made joins its reasons.
 void with_all_motions(ProgramProof& program, const std::function<void(const std::vector<path::ToolMotion>& motions,
                                                                       std::span<const proof::LikeMotion> likes)>& work);
+
+/// Cuts of these teeth, each its own list; what keeps them from being made joins the reasons.
+[[nodiscard]] std::map<int, std::vector<path::ToolMotion>> cuts_of(ProgramProof& program, const std::set<int>& teeth);
+
+/// Teeth that are told one by one.
+inline constexpr std::size_t kTeethTold = 4;
 
 /// The one proof of a program: feeds, speeds, tools and coolant are judged by what the job asks (proof_limits.h), a
 /// line HASH that does not fit is a reason where the text is our own, a warning else. Of another text whose axes leave

@@ -47,12 +47,14 @@ class Stock {
   Stock(const std::vector<path::ToolMotion>& motions, const EngagementQuery& q)
       : q_(q), own_(cuts_of(motions), q.cutting, q.top_mm) {}
 
-  /// Has anything cut within `least_mm` of this place, once the first `done` motions that cut were made?
+  /// Has no earlier operation cut within `least_mm` of this place?
+  [[nodiscard]] bool stood(const Vec3& p, double least_mm) const {
+    return q_.in_blank(p) && std::none_of(q_.before.begin(), q_.before.end(),
+                                          [&](const Removed* removed) { return removed->comes_within(p, least_mm); });
+  }
+  /// And none of the first `done` motions that cut?
   [[nodiscard]] bool stands(const Vec3& p, std::size_t done, double least_mm) const {
-    if (!q_.in_blank(p)) return false;
-    for (const Removed* removed : q_.before)
-      if (removed->comes_within(p, least_mm)) return false;
-    return !own_.comes_within(done, p, least_mm);
+    return stood(p, least_mm) && !own_.comes_within(done, p, least_mm);
   }
   /// Of every motion, how many ahead of it cut.
   static std::vector<std::size_t> done_before(const std::vector<path::ToolMotion>& motions) {
@@ -150,10 +152,11 @@ class OverloadAlong {
 
   Overload run() const {
     const std::vector<std::size_t> done = Stock::done_before(motions_);
+    const std::vector<bool> apart = far_apart();
     std::vector<Overload> found(motions_.size());
     WorkShare share{double(motions_.size())};
     tbb::parallel_for(std::size_t{0}, motions_.size(), [&](std::size_t k) {
-      if (!motions_[k].rapid && k % one_of_ == 0) found[k] = along(motions_[k], done[k]);
+      if (!motions_[k].rapid && k % one_of_ == 0) found[k] = along(motions_[k], done[k], apart[k]);
       share.add();
     });
     Overload most;
@@ -176,14 +179,27 @@ class OverloadAlong {
     double layer = 0;   ///< h of the chart above the lowest place of the mill: the same where its axis stands upright
   };
 
-  [[nodiscard]] Overload along(const path::ToolMotion& m, std::size_t done) const {
+  /// Motions so far along the way that they are asked for more than their chips; all of them where the query leaves
+  /// some out.
+  [[nodiscard]] std::vector<bool> far_apart() const {
+    std::vector<bool> apart(motions_.size(), asks_more_);
+    double way = INFINITY;  // since the last one; from a rapid on the first one counts
+    for (std::size_t k = 0; k < motions_.size() && asks_more_ && one_of_ == 1; ++k) {
+      const path::ToolMotion& m = motions_[k];
+      way = m.rapid ? INFINITY : way + (m.tip_to - m.tip_from).norm();
+      apart[k] = way >= kLoadPlaces * radius_;
+      if (apart[k] && !m.rapid) way = 0;
+    }
+    return apart;
+  }
+  [[nodiscard]] Overload along(const path::ToolMotion& m, std::size_t done, bool asks_more) const {
     Overload most;
     const double way = (m.tip_to - m.tip_from).norm();
     if (way == 0) return most;
     const double quick = asked_.feed_mm_min == INFINITY ? 0
                          : m.minutes > 0                ? way / m.minutes / asked_.feed_mm_min
                                                         : INFINITY;
-    if (quick <= kLoadFactor && !asks_more_) return most;  // no chip is larger than the feed
+    if (quick <= kLoadFactor && !asks_more) return most;  // no chip is larger than the feed
     const int places = std::max(1, int(std::ceil(way / (kLoadPlaces * radius_))));
     for (int k = 0; k < places; ++k)
       for (const Edge& e : edges(m, (k + 0.5) / places)) look(e, quick, done, most);
@@ -224,17 +240,19 @@ class OverloadAlong {
     if (deep > 0 && e.share >= kAhead && e.layer > std::max(deep, most.depth_mm) &&
         e.layer < deep + kLoadHeights * radius_ && lies_below(e.at, kLeastStock, done))
       most.depth_mm = e.layer;
-    if (!(asked_.stock_mm < INFINITY) || e.height > kLoadHeights * radius_) return;
-    for (double stock = std::max(kLoadFactor * asked_.stock_mm, kDeeper * most.stock_mm);
-         stock < radius_ && lies_below(e.at, std::max(stock, kLeastStock), done); stock *= kDeeper)
+    if (!(asked_.stock_mm < INFINITY)) return;
+    for (double stock = std::max({kLoadFactor * asked_.stock_mm, kDeeper * most.stock_mm, kLeastStock});
+         stock < radius_ && within_blank(e.at, stock) && stock_.stood(e.at, stock); stock *= kDeeper)
       most.stock_mm = stock;
   }
   /// So far below all that is free, the outside of the blank too.
   [[nodiscard]] bool lies_below(const Vec3& p, double depth_mm, std::size_t done) const {
+    return within_blank(p, depth_mm) && stock_.stands(p, done, depth_mm);
+  }
+  [[nodiscard]] bool within_blank(const Vec3& p, double depth_mm) const {
     const double at = azimuth(p);
     const Vec3 up = chart_.up_at(at), along = chart_.along_at(at);
-    return in_blank_(p + depth_mm * up) && in_blank_(p + depth_mm * along) && in_blank_(p - depth_mm * along) &&
-           stock_.stands(p, done, depth_mm);
+    return in_blank_(p + depth_mm * up) && in_blank_(p + depth_mm * along) && in_blank_(p - depth_mm * along);
   }
 
   static constexpr double kHalfChip = kPi / 3;  // about the feed on either side: the chip is half as thick there

@@ -10,9 +10,14 @@
 #include <sstream>
 
 #include "app/commands/run.h"
+#include "app/job/file.h"
+#include "app/process/load_judge.h"
+#include "cam/tool/cutters.h"
 #include "tests/app/checker.h"
 #include "tests/app/judged.h"
+#include "tests/app/line_job.h"
 #include "tests/support/files.h"
+#include "tests/support/sample_tools.h"
 #include "tests/support/threads.h"
 
 namespace toothpath::test {
@@ -26,20 +31,18 @@ struct Verdict {
   double left_um = 0;
 };
 
-/// samples/spur_quick.toml at a place of the table, its teeth written out or in loops: made once.
+/// A job and its program, made once.
 class Made {
  public:
-  Made(const std::string& place, const std::string& post) {
-    const std::string machine = file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml");
-    write_file(dir_ / "machine.toml", machine + "\n[post]\n" + post + "\n");
-    std::string job = file_text(TOOTHPATH_SOURCE_DIR "/samples/spur_quick.toml");
-    replace_once(job, "\"xyzac_large.toml\"", "\"machine.toml\"\naccept_assumed = true");
-    replace_once(job, "[3.0, -2.0, 120.0]", "[" + place + ", 120.0]");
-    replace_once(job, "[3.0, -2.0, 0.0]", "[" + place + ", 0.0]");
-    run(job);
-  }
   /// Any job, on the machine that it names.
   explicit Made(const std::string& job) { run(job); }
+  /// A job of xyzac_large.toml, with this for the post processor.
+  Made(std::string job, const std::string& post) {
+    const std::string machine = file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml");
+    write_file(dir_ / "machine.toml", machine + "\n[post]\n" + post + "\n");
+    replace_once(job, "\"xyzac_large.toml\"", "\"machine.toml\"\naccept_assumed = true");
+    run(job);
+  }
   [[nodiscard]] const Lines& lines() const { return lines_; }
   /// What `check` says of a text; the job is read and planned once for all of them.
   [[nodiscard]] Verdict check(const Lines& lines) const {
@@ -55,10 +58,21 @@ class Made {
     if (report.contains("excess_um")) out.left_um = report["excess_um"]["finished"]["max"].get<double>();
     return out;
   }
+  /// samples/bevel_pinion.toml with its teeth written out.
+  static const Made& bevel_pinion() {
+    static const Made made(file_text(TOOTHPATH_SOURCE_DIR "/samples/bevel_pinion.toml"), "index_loop = false");
+    return made;
+  }
+  /// samples/spur_quick.toml at a place of the table, its teeth written out or in loops.
   static const Made& of(const std::string& place, const std::string& post) {
     static std::map<std::string, std::unique_ptr<Made>> made;
     auto& one = made[place + post];
-    if (!one) one = std::make_unique<Made>(place, post);
+    if (!one) {
+      std::string job = file_text(TOOTHPATH_SOURCE_DIR "/samples/spur_quick.toml");
+      replace_once(job, "[3.0, -2.0, 120.0]", "[" + place + ", 120.0]");
+      replace_once(job, "[3.0, -2.0, 0.0]", "[" + place + ", 0.0]");
+      one = std::make_unique<Made>(job, post);
+    }
     return *one;
   }
 
@@ -277,18 +291,25 @@ TEST_F(LoopsThatDiffer, AndWhatIsMissingIsFound) {
   expect_told(made().check(indexed("0-#1*2*360.0001/60", {1})), {"operation 1 does not cut tooth 1, 3, 5"});
 }
 
-/// The passes of the first operation, a sub-program: runs of lines that go across, [first, last).
-std::vector<std::pair<std::ptrdiff_t, std::ptrdiff_t>> roughing_passes(const Lines& lines) {
+using Passes = std::vector<std::pair<std::ptrdiff_t, std::ptrdiff_t>>;
+
+/// Runs of lines that go across, [first, last), from one line to another.
+Passes passes_between(const Lines& lines, const std::string& from, const std::string& to) {
   const auto cut = [](const std::string& line) { return line.starts_with("X") || line.starts_with("Y"); };
-  const auto end = std::find(lines.begin(), lines.end(), "o100 endsub");
-  std::vector<std::pair<std::ptrdiff_t, std::ptrdiff_t>> out;
-  for (auto at = lines.begin(); at != end;) {
+  const auto begin = std::find(lines.begin(), lines.end(), from), end = std::find(begin, lines.end(), to);
+  Passes out;
+  for (auto at = begin; at != end;) {
     const auto first = std::find_if(at, end, cut);
     at = std::find_if_not(first, end, cut);
     if (at - first > 2) out.emplace_back(first - lines.begin(), at - lines.begin());
   }
   return out;
 }
+
+std::string tooth_line(int k) { return fmt::format("(TOOTH {})", k); }
+
+/// Those of the first operation, a sub-program.
+Passes roughing_passes(const Lines& lines) { return passes_between(lines, "o100 sub", "o100 endsub"); }
 
 // A roughing pass is dropped: nothing is gouged, the finished surface is right, the tool runs through what stands.
 TEST(PassesThatAreMissing, AreFoundByTheirLoad) {
@@ -307,13 +328,35 @@ TEST(PassesThatAreMissing, AreFoundByTheirLoad) {
 // The finger mill that finishes a bevel gear goes into the full space where the only roughing pass of a half is
 // missing: the walls come out right, and no ridge is left. What it should meet tells a plan made anew. (That the whole
 // text is verified: BevelCommand.CheckSaysTheSameOfTheProgram.)
-TEST(PassesThatAreMissing, OfABevelGearAreFoundByTheEngagement) {
-  const Made made(file_text(TOOTHPATH_SOURCE_DIR "/samples/bevel_pinion.toml"));
+TEST(PassesThatAreMissing, OfABevelGearAreFoundByTheStock) {
+  const Made& made = Made::bevel_pinion();
   Lines lines = made.lines();
-  const auto [first, last] = roughing_passes(lines).at(3);
-  lines.erase(lines.begin() + first, lines.begin() + last);
-  expect_told(made.check(lines),
-              {"operation 1: at line [0-9]+ its teeth are in the material over 180 deg, in a plan of this job over"});
+  for (int k = 17; k >= 0; --k) {
+    const auto [first, last] = passes_between(lines, tooth_line(k), tooth_line(k + 1)).at(3);
+    lines.erase(lines.begin() + first, lines.begin() + last);
+  }
+  expect_told(made.check(lines), {"operation 1: at line [0-9]+ the chip lies [0-9.]+ mm or more below what was free"});
+}
+
+// One tooth of it gets a pass more than the others: its second one is made ahead of all, half a millimetre higher and
+// nearly twice as quick.
+TEST(PassesThatAreMore, OnOneToothOfABevelGearAreJudgedThere) {
+  const Made& made = Made::bevel_pinion();
+  Lines lines = made.lines();
+  const auto [first, last] = passes_between(lines, tooth_line(5), tooth_line(6)).at(1);
+  Lines more{"G93"};
+  for (auto at = first - 4; at <= last + 1; ++at) {  // with its links
+    std::string line = lines[std::size_t(at)];
+    std::smatch word;
+    if (std::regex_search(line, word, std::regex("Z([-0-9.]+)")))
+      line = word.prefix().str() + fmt::format("Z{:.4f}", std::stod(word[1]) + 0.5) + word.suffix().str();
+    if (at >= first && std::regex_search(line, word, std::regex("F([0-9.]+)")))
+      line = word.prefix().str() + fmt::format("F{:.3f}", 1.9 * std::stod(word[1])) + word.suffix().str();
+    more.push_back(line);
+  }
+  lines.insert(std::find(lines.begin(), lines.end(), tooth_line(5)) + 1, more.begin(), more.end());
+  expect_told(made.check(lines), {"tooth 5: operation 0: at line [0-9]+ the tool runs through what stands there with a "
+                                  "chip of 1\\.[6-9][0-9]* times"});
 }
 
 // A ball that is smaller than the one before it: nothing but a plan tells what it meets. Six passes are missing, with
@@ -332,6 +375,66 @@ TEST(PassesThatAreMissing, AheadOfASmallerBallAreFoundByTheStock) {
   lines.erase(lines.begin() + passes.at(27).second + 1, lines.begin() + passes.at(33).second + 1);
   const Verdict found = made.check(lines);
   expect_told(found, {"^operation 1: at line [0-9]+ the chip lies [0-9.]+ mm or more below what was free"});
+}
+
+// The side of a tapered mill goes into the bottom of a space that the roughing ball, which is wider, has not opened:
+// what it should meet tells a plan of the operations ahead.
+TEST(PassesThatAreMissing, AheadOfTheSideOfAMillAreFoundByTheStock) {
+  std::string job = kLineGear + roughing(2) + operation("line_milling", 1, "left = 0.01\nchord_tolerance = 0.005") +
+                    operation("finishing", 1, "regions = [\"fillet\", \"root\"]\nscallop = 0.02");
+  replace_once(job, "outer_radius = 65.0", "outer_radius = 61.5");
+  const Made made(job);
+  const Verdict whole = made.check(made.lines());
+  EXPECT_TRUE(whole.verified) << whole.reasons;
+  Lines lines = made.lines();
+  const auto end = std::find(lines.begin(), lines.end(), "o100 endsub");
+  std::vector<Lines::iterator> up;  // where the tool is above the teeth, and the next passes begin
+  for (auto at = lines.begin(); at != end; ++at)
+    if (at->starts_with("G0 X")) up.push_back(at);
+  ASSERT_GT(up.size(), 3U);
+  lines.erase(up.back(), end - 1);
+  expect_told(made.check(lines), {"^operation 1: at line [0-9]+ the chip lies [0-9.]+ mm or more below what was free"});
+}
+
+// Through a block: a plan goes 0.85 mm beside the slot that was cut before. Where its ball is 1 mm wide or more and
+// cuts half a feed per tooth, teeth are in the material over acos(1 - 0.85 / 1) = 82 deg at most. The text goes 0.6 mm
+// below the slot, which is less stock, but all around.
+TEST(PassesThatAreMissing, AreFoundByTheAngleWhereTheStockIsNoMore) {
+  const auto job = job::parse_job(file_text(TOOTHPATH_SOURCE_DIR "/samples/spur_quick.toml"), "job.toml");
+  ASSERT_TRUE(job);
+  const auto tool = ball_mill(4, 12, 4, 24, 10);
+  const auto cuts = [](double y, double z) {
+    std::vector<path::ToolMotion> both(2);
+    for (int n = 0; n < 2; ++n) {
+      path::ToolMotion& m = both[std::size_t(n)];
+      m.operation = n;
+      m.line = 7 + n;
+      m.minutes = 1;
+      m.tip_from = {-20, n * y, n == 0 ? -3 : z};
+      m.tip_to = {20, n * y, n == 0 ? -3 : z};
+    }
+    return both;
+  };
+  process::LoadQuery query{.job = job.value(),
+                           .mills = {tool::profile_of(tool), tool::profile_of(tool)},
+                           .bodies = {tool::proof_tool(tool), tool::proof_tool(tool)},
+                           .in_blank = [](const Vec3& p) { return p.z() <= 0 && std::abs(p.x()) < 10; },
+                           .stock_before_mm = {INFINITY, INFINITY}};
+  query.plan = process::planned_once([&](std::size_t operations) -> process::PlannedMotions {
+    EXPECT_EQ(operations, 2U);
+    return cuts(0.85, -3);
+  });
+  const process::LoadJudge judge(std::move(query));
+  for (const auto& [y, z] : {std::pair(0.0, -3.6), {0.85, -3.0}}) {
+    std::vector<std::string> reasons, warnings;
+    judge.judge_by_plan(cuts(y, z), reasons, warnings);
+    EXPECT_TRUE(warnings.empty());
+    if (y > 0) EXPECT_TRUE(reasons.empty()) << reasons.front();
+    else
+      expect_told({false, reasons.empty() ? "" : reasons.front()},
+                  {"^operation 1: at line 8 its teeth are in the material over 1[0-9][0-9] deg, in a plan of this job "
+                   "over [89][0-9] deg"});
+  }
 }
 
 // Every tooth is proven, beside the first one: sixty of them cost a few times what one costs.

@@ -43,9 +43,9 @@ class FingerMilling final : public process::GearMilling {
         limits_(limits),
         gouge_(gear, job.tools, job.operations, limits, check_options(grid)),
         check_(job, machine, limits, gear, gouge_) {
-    check_.plan_anew = process::planned_once([this]() -> process::PlannedMotions {
+    check_.plan_anew = process::planned_once([this](std::size_t operations) -> process::PlannedMotions {
       std::vector<path::ToolMotion> motions;
-      for (std::size_t n = 0; n < job_.operations.size(); ++n) {
+      for (std::size_t n = 0; n < operations; ++n) {
         const auto plan = plan_of(n);
         if (!plan) return plan.error();
         const auto own = path::motions_of(plan->path);

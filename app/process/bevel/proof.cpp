@@ -235,8 +235,10 @@ void BevelGearCheck::meet(const readback::OperationTrace& trace, std::span<const
 void BevelGearCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   const MovingAxes moving = std::exchange(moving_, {});
   const std::map<int, double> unlike = unlike_teeth(program, job_);
+  process::LoadedOtherwise loaded(program, *this);
   clock.run("proof of the program", [&] {
     process::with_all_motions(program, [&](const auto& motions, auto likes) {
+      loaded.see(motions, likes);
       result = finger::verify_teeth(check_, motions, likes, unlike);
     });
   });
@@ -252,6 +254,7 @@ void BevelGearCheck::judge(process::ProgramProof& program, app::StageClock& cloc
       const process::LoadJudge load = load_judge();
       load.judge(firsts, program.reasons);
       load.judge_by_plan(firsts, program.reasons, program.warnings);
+      loaded.judge(program, load);
     });
   program.gouge = result.gouge;
   program.excess = result.operations;

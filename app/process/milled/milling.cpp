@@ -83,8 +83,9 @@ Milling::Milling(const job::Job& job, const machines::Machine& machine, analytic
       body_(std::move(body)),
       gouge_(part_, job.tools, {limits, part_.part().blank_top()}),
       check_(job, machine, limits, part_, body_, gouge_, surface_options(grid)) {
-  check_.plan_anew = process::planned_once([this]() -> process::PlannedMotions {
-    auto planned = plan::plan_milling(part_, job_.tools, job_.operations, options_);
+  check_.plan_anew = process::planned_once([this](std::size_t operations) -> process::PlannedMotions {
+    const auto first = job_.operations.begin();
+    auto planned = plan::plan_milling(part_, job_.tools, {first, first + std::ptrdiff_t(operations)}, options_);
     if (auto* refusal = planned.refused()) return std::move(refusal->diagnostic);
     std::vector<path::ToolMotion> motions;
     for (const path::ClPath& path : planned.value().paths) {

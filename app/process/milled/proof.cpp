@@ -72,9 +72,6 @@ proof::GougeResult gouge_of(const analytic::GougeCheck& check, process::ProgramP
   return stream.finish();
 }
 
-/// Teeth that are told one by one.
-constexpr std::size_t kTeethTold = 4;
-
 /// The least stock after an operation, as a share of its allowance.
 constexpr double kLeastAllowance = 0.8;
 
@@ -156,23 +153,6 @@ double reach_of(const tool::ProofTool& tool) {
   return reach;
 }
 
-/// Cuts of these teeth, each its own list.
-std::map<int, std::vector<path::ToolMotion>> cuts_of(process::ProgramProof& program, const std::set<int>& teeth) {
-  std::map<int, std::vector<path::ToolMotion>> cuts;
-  const auto take = [&](const std::vector<path::ToolMotion>& motions) {
-    for (const path::ToolMotion& m : motions)
-      if (!m.rapid && teeth.contains(m.tooth)) cuts[m.tooth].push_back(m);
-  };
-  if (!program.each_tooth) {
-    take(program.motions);
-  } else if (!teeth.empty()) {
-    const Status made =
-        program.each_tooth(process::TeethWanted::cuts, [&](auto&& motions, auto, bool) { take(motions); });
-    if (!made) program.reasons.push_back(made.error().message);
-  }
-  return cuts;
-}
-
 report::Finding scallop_of(const proof::ScallopResult& scallop) {
   report::Finding finding;
   finding.key = "scallop_um";
@@ -247,8 +227,7 @@ bool MilledCheck::measures(int operation) const {
 /// Later teeth that are no copies of the first one, by what may stand on them.
 class MilledCheck::OtherTeeth {
  public:
-  OtherTeeth(const process::ProgramProof& program, const MilledCheck& check)
-      : check_(check), firsts_(process::first_teeth(program.motions)), loads_(program.others_text) {
+  OtherTeeth(const process::ProgramProof& program, const MilledCheck& check) : check_(check) {
     for (const process::ToothCut& other : program.other_teeth) {
       if (other.cuts_nothing() || !check.measures(other.operation)) continue;
       double& away = away_[other.tooth];
@@ -265,8 +244,7 @@ class MilledCheck::OtherTeeth {
     for (const auto& [tooth, away] : away_)
       if (!unlike_.contains(tooth) && !within(surface, away)) near_.emplace(tooth, cut::LeftOnTooth(surface.watched));
   }
-  void see(const std::vector<path::ToolMotion>& motions, std::span<const proof::LikeMotion> likes) {
-    if (loads_) see_what_is_like_none(motions, likes);
+  void see(const std::vector<path::ToolMotion>& motions) {
     if (near_.empty()) return;
     std::map<std::pair<int, int>, std::vector<path::ToolMotion>> cuts;  // by tooth and operation
     for (const path::ToolMotion& m : motions)
@@ -276,8 +254,6 @@ class MilledCheck::OtherTeeth {
       near_.at(key.first).add(process::in_space_0(std::move(own), check_.teeth()), check_.tool_of(key.second),
                               check_.part_.part().highest_z());
   }
-  /// Those with cuts that the first tooth does not have: what they take off is not what it takes off there.
-  [[nodiscard]] const std::set<int>& loaded_otherwise() const { return otherwise_; }
   /// Those that must be measured by themselves, and what is missing there; empty: nothing is.
   [[nodiscard]] std::map<int, std::string> unlike() const {
     std::map<int, std::string> out = unlike_;
@@ -295,20 +271,7 @@ class MilledCheck::OtherTeeth {
     return true;
   }
 
-  void see_what_is_like_none(const std::vector<path::ToolMotion>& motions, std::span<const proof::LikeMotion> likes) {
-    auto like = likes.begin();
-    for (std::size_t k = 0; k < motions.size(); ++k) {
-      const path::ToolMotion& m = motions[k];
-      if (like != likes.end() && like->motion == k) ++like;
-      else if (!m.rapid && m.tooth != firsts_.at(m.operation) && !otherwise_.contains(m.tooth) && check_.may_cut(m))
-        otherwise_.insert(m.tooth);
-    }
-  }
-
   const MilledCheck& check_;
-  std::map<int, int> firsts_;  // tooth of every operation
-  bool loads_;
-  std::set<int> otherwise_;
   std::map<int, double> away_;
   std::map<int, std::string> unlike_;
   std::map<int, cut::LeftOnTooth> near_;
@@ -324,19 +287,20 @@ void MilledCheck::judge_unlike(process::ProgramProof& program, const OtherTeeth&
   std::set<int> teeth;
   for (const auto& [tooth, why] : unlike) teeth.insert(tooth);
   std::size_t refused = 0;
-  for (auto& [tooth, cuts] : cuts_of(program, teeth)) {
+  for (auto& [tooth, cuts] : process::cuts_of(program, teeth)) {
     cut::CutSurface own = meter_.measure(process::in_space_0(std::move(cuts), this->teeth()), 0);
     std::vector<std::string> reasons;
     judge_surface(own, job_, limits_, reasons);
     judge_unreached(own.unreached, job_.verify.unreached_mm, reasons);
     const std::string& why = unlike.at(tooth);
     if (!reasons.empty() && !why.empty()) reasons.push_back(why);
-    if (!reasons.empty() && ++refused <= kTeethTold)
+    if (!reasons.empty() && ++refused <= process::kTeethTold)
       for (const std::string& reason : reasons)
         program.reasons.push_back(reason == why ? why : fmt::format("tooth {}: {}", tooth, reason));
     if (own.finished.max_mm > surface.finished.max_mm) surface = std::move(own);
   }
-  if (refused > kTeethTold) program.reasons.push_back(fmt::format("so it is with {} more teeth", refused - kTeethTold));
+  if (refused > process::kTeethTold)
+    program.reasons.push_back(fmt::format("so it is with {} more teeth", refused - process::kTeethTold));
 }
 
 /// By what the job asks, and where that says nothing of the stock by a plan made anew.
@@ -345,30 +309,13 @@ process::LoadJudge MilledCheck::load_judge() const {
                            .in_blank = [&](const Vec3& p) { return part_.part().in_blank(p); },
                            .top_mm = part_.part().highest_z(),
                            .chart = part_.part().chart()};
-  bool side = false;  // plans of line milling take long
   for (std::size_t n = 0; n < job_.operations.size(); ++n) {
     query.mills.push_back(tool::profile_of(job_.tools[std::size_t(job_.operations[n].tool)]));
     query.bodies.push_back(tool_of(int(n)));
     query.stock_before_mm.push_back(ball::stock_before(job_.operations, job_.tools, n));
-    side = side || job_.operations[n].type == path::OperationType::line_milling;
   }
-  if (!side) query.plan = plan_anew;
+  query.plan = plan_anew;
   return process::LoadJudge(std::move(query));
-}
-
-void MilledCheck::judge_other_loads(process::ProgramProof& program, const process::LoadJudge& judge,
-                                    const std::set<int>& teeth) const {
-  std::size_t refused = 0;
-  for (auto& [tooth, cuts] : cuts_of(program, teeth)) {
-    if (refused > kTeethTold) break;  // it is not verified at any rate
-    std::vector<std::string> reasons;
-    const std::vector<path::ToolMotion> own = process::in_space_0(std::move(cuts), this->teeth());
-    judge.judge(own, reasons);
-    if (program.reasons.empty()) judge.judge_by_plan(own, reasons, program.warnings);
-    if (!reasons.empty() && ++refused <= kTeethTold)
-      for (const std::string& reason : reasons) program.reasons.push_back(fmt::format("tooth {}: {}", tooth, reason));
-  }
-  if (refused > kTeethTold) program.reasons.emplace_back("so it is with more teeth");
 }
 
 void MilledCheck::meet(const readback::OperationTrace&, std::span<const path::ToolMotion>, const readback::NcControl&) {
@@ -378,6 +325,7 @@ void MilledCheck::judge(process::ProgramProof& program, app::StageClock& clock) 
   std::vector<int> tool_of_operation;
   for (const auto& operation : job_.operations) tool_of_operation.push_back(operation.tool);
   OtherTeeth others(program, *this);
+  process::LoadedOtherwise loaded(program, *this);
   const std::vector<path::ToolMotion> firsts = process::first_in_space_0(program.motions, teeth());
   surface = clock.run("cut surface", [&] { return meter_.measure(firsts, others.watch_mm()); });
   std::optional<process::LoadJudge> load;
@@ -388,8 +336,10 @@ void MilledCheck::judge(process::ProgramProof& program, app::StageClock& clock) 
     });
   others.measured(surface);
   program.gouge = clock.run("proof of the program", [&] {
-    return gouge_of(check_, program, tool_of_operation,
-                    [&](const auto& motions, auto likes) { others.see(motions, likes); });
+    return gouge_of(check_, program, tool_of_operation, [&](const auto& motions, auto likes) {
+      others.see(motions);
+      loaded.see(motions, likes);
+    });
   });
   judge_gouge(program.gouge, check_, limits_.gouge_mm, program.reasons);
   judge_surface(surface, job_, limits_, program.reasons);
@@ -397,7 +347,7 @@ void MilledCheck::judge(process::ProgramProof& program, app::StageClock& clock) 
   if (load)
     clock.run("engagement", [&] {
       load->judge_by_plan(firsts, program.reasons, program.warnings);
-      judge_other_loads(program, *load, others.loaded_otherwise());
+      loaded.judge(program, *load);
     });
   if (!program.reasons.empty()) program.reasons.insert(program.reasons.end(), shortened.begin(), shortened.end());
   if (!program.reasons.empty())

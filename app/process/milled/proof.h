@@ -2,8 +2,6 @@
 // rapids about the blank, the cut surface.
 #pragma once
 
-#include <set>
-
 #include "app/process/load_judge.h"
 #include "app/process/milled/body.h"
 #include "app/process/program_proof.h"
@@ -44,8 +42,6 @@ class MilledCheck final : public process::GearCheck {
   [[nodiscard]] const tool::ProofTool& tool_of(int operation) const;
   void judge_unlike(process::ProgramProof& program, const OtherTeeth& others);
   [[nodiscard]] process::LoadJudge load_judge() const;
-  void judge_other_loads(process::ProgramProof& program, const process::LoadJudge& judge,
-                         const std::set<int>& teeth) const;
 
   const job::Job& job_;
   const machines::Machine& machine_;

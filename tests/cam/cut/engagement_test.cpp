@@ -165,5 +165,28 @@ TEST(Overload, OfStockThatAnEarlierOperationLeft) {
   EXPECT_EQ(found.stock_line, 2);
 }
 
+// However short the steps of a pass are: what it has just cut itself was no free place that the stock lies below.
+TEST(Overload, OfStockUnderShortSteps) {
+  const auto tool = tool::proof_tool(mill(tool::CutterType::ball_end_mill, 4));
+  const cut::Removed removed({pass(0, -3)}, tool, 0);
+  std::vector<path::ToolMotion> steps;
+  for (int k = 0; k < 80; ++k) {
+    steps.push_back(fed(0, -3.5, 1, k));
+    steps.back().tip_from.x() = -12 + 0.1 * k;
+    steps.back().tip_to.x() = -12 + 0.1 * (k + 1);
+  }
+  EXPECT_GT(overload(steps, {100, 0, 0.1}, {&removed}).stock_mm, 0.3);
+  EXPECT_EQ(overload(steps, {100, 0, 0.4}, {&removed}).stock_mm, 0);
+}
+
+// The side of a mill meets stock all along its height: a mill with a shorter cutting part went there before.
+TEST(Overload, OfStockHighBesideTheSide) {
+  auto low = mill(tool::CutterType::ball_end_mill, 4);
+  low.flute_length_mm = 5;
+  const cut::Removed removed({pass(0, -9)}, tool::proof_tool(low), 0);
+  const auto found = overload({fed(0, -9, 1, 1)}, {100, 0, 0.2}, {&removed});
+  EXPECT_GT(found.stock_mm, 1);
+}
+
 }  // namespace
 }  // namespace toothpath
