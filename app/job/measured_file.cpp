@@ -123,12 +123,14 @@ std::optional<Diagnostic> check_sizes(const std::string& file, const std::vector
 
 /// Flanks of a face gear are counted by roll angle and radius.
 GridOfGear grid_of(const face_gear::FaceGear& gear) {
-  return {gear.rings().size(), false,
+  return {gear.rings().size(),
+          false,
           [&gear](int rows, int columns) {
             return inspection::inspection_grid(drawn_solid(gear), {rows, columns});
           },
           [](const inspection::InspectionPoint& at) { return Vec2(radius(at.p), -at.theta); },
-          [&gear](int zone) { return -gear.rings()[std::size_t(zone)].surface.shaper.theta_t; }};
+          [&gear](int zone) { return -gear.rings()[std::size_t(zone)].surface.shaper.theta_t; },
+          drawn_solid(gear)};
 }
 
 }  // namespace
@@ -194,14 +196,16 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
 namespace {
 
 /// Each grid was taken on a gear cut with the corrections of all before it, so their deviations add up.
-Result<std::vector<MeasuredField>> fit_grids(const std::vector<MeasuredFlanks>& grids, const GridOfGear& gear) {
+Result<FittedCorrection> fit_grids(const std::vector<MeasuredFlanks>& grids, const GridOfGear& gear) {
   const auto& points = grids.front().points;
   for (const auto& grid : grids)
     if (grid.points.size() != points.size())
       return at(grid.file, 1, 0, "{} points, but {} has {}: all measurements need the same grid", grid.points.size(),
                 grids.front().file, points.size());
-  std::vector<MeasuredField> out;
-  for (int zone = 0; zone < static_cast<int>(gear.zones); ++zone)
+  FittedCorrection out;
+  out.grid = points;
+  for (int zone = 0; zone < static_cast<int>(gear.zones); ++zone) {
+    modification::RingCorrection ring;
     for (const int side : {1, -1}) {
       // The field counts down the profile: its roll parameter is the height with the other sign.
       std::vector<modification::FlankDeviation> flank;
@@ -214,25 +218,13 @@ Result<std::vector<MeasuredField>> fit_grids(const std::vector<MeasuredFlanks>& 
       }
       auto fit = modification::FlankCorrection::fit(flank, -gear.foot(zone));
       if (!fit) return at(grids.front().file, 1, 0, "zone {}, flank {:+}: {}", zone, side, fit.error().message);
-      out.push_back({zone, side, std::move(*fit)});
+      out.flanks.push_back({zone, side, grids.back().file, 1, fit->residual()});
+      (side > 0 ? ring.plus : ring.minus) = std::move(*fit);
     }
-  return out;
-}
-
-}  // namespace
-
-FittedCorrection correction_of(std::vector<MeasuredField> fields, const std::string& file) {
-  FittedCorrection out;
-  for (std::size_t k = 0; k + 1 < fields.size(); k += 2) {
-    for (const std::size_t n : {k, k + 1})
-      out.flanks.push_back({fields[n].zone, fields[n].side, file, 1, fields[n].field.residual()});
-    out.rings.push_back(std::make_shared<modification::RingCorrection>(
-        modification::RingCorrection{std::move(fields[k].field), std::move(fields[k + 1].field)}));
+    out.rings.push_back(std::make_shared<modification::RingCorrection>(std::move(ring)));
   }
   return out;
 }
-
-namespace {
 
 /// The second of two corrections on top of the first.
 void add(FittedCorrection& sum, FittedCorrection more) {
@@ -248,70 +240,51 @@ void add(FittedCorrection& sum, FittedCorrection more) {
 
 }  // namespace
 
-Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal, const MeasuredInput& measured) {
-  CorrectedGear corrected{nominal, {}, measured.files, {}};
+Result<FittedCorrection> fit_measured(const MeasuredInput& measured, const GridOfGear& gear) {
   std::vector<MeasuredFlanks> grids;
-  std::vector<FittedCorrection> fits;
+  std::vector<FittedCorrection> of_points;
   for (const auto& file : measured.files) {
     const auto text = toml::read_input_text(file, kMostMeasuredBytes);
     if (!text) return text.error();
     if (looks_like_grid(*text)) {
       if (measured.ball_diameter_mm)
         return at(file, 1, 0, "an inspection grid holds deviations: a ball's diameter is for files of points");
-      auto grid = parse_measured(*text, file, nominal);
+      auto grid = parse_measured(*text, file, gear);
       if (!grid) return grid.error();
       grids.push_back(std::move(*grid));
       continue;
     }
-    const auto points = parse_measured_points(*text, file, nominal, measured.ball_diameter_mm.value_or(0));
-    if (!points) return points.error();
-    auto fit = fit_points(nominal, *points);
-    if (!fit) return fit.error();
-    fits.push_back(std::move(*fit));
-  }
-  if (!grids.empty()) {
-    auto fit = fit_grids(grids, grid_of(nominal));
-    if (!fit) return fit.error();
-    add(corrected.fit, correction_of(std::move(*fit), grids.back().file));
-    corrected.grid = grids.front().points;
-  } else {
-    auto grid = inspection::inspection_grid(drawn_solid(nominal));
-    if (!grid) return grid.error();
-    corrected.grid = std::move(*grid);
-  }
-  for (auto& fit : fits) add(corrected.fit, std::move(fit));
-  corrected.gear = nominal.corrected(corrected.fit.rings);
-  return corrected;
-}
-
-namespace {
-
-/// Files that are all grids of one gear.
-Result<std::vector<MeasuredFlanks>> read_measured_grids(const MeasuredInput& measured, const GridOfGear& gear) {
-  std::vector<MeasuredFlanks> grids;
-  for (const auto& file : measured.files) {
-    const auto text = toml::read_input_text(file, kMostMeasuredBytes);
-    if (!text) return text.error();
-    if (!looks_like_grid(*text))
+    if (!gear.solid)
       return at(file, 1, 0,
-                "files of points are put on face gears only; the grid of inspection.csv with a column "
-                "deviation_um is needed: \"{}\"",
+                "files of points are not put on this gear; the grid of inspection.csv with a column deviation_um is "
+                "needed: \"{}\"",
                 kHeader);
-    if (measured.ball_diameter_mm)
-      return at(file, 1, 0, "an inspection grid holds deviations: a ball's diameter is for files of points");
-    auto grid = parse_measured(*text, file, gear);
-    if (!grid) return grid.error();
-    grids.push_back(std::move(*grid));
+    const auto points = parse_measured_points(*text, file, *gear.solid, measured.ball_diameter_mm.value_or(0));
+    if (!points) return points.error();
+    auto fit = fit_points(gear, *points);
+    if (!fit) return fit.error();
+    of_points.push_back(std::move(*fit));
   }
-  return grids;
+  FittedCorrection out;
+  if (!grids.empty()) {
+    auto fit = fit_grids(grids, gear);
+    if (!fit) return fit.error();
+    out = std::move(*fit);
+  }
+  for (auto& fit : of_points) add(out, std::move(fit));
+  return out;
 }
 
-}  // namespace
-
-Result<std::vector<MeasuredField>> fit_measured(const MeasuredInput& measured, const GridOfGear& gear) {
-  const auto grids = read_measured_grids(measured, gear);
-  if (!grids) return grids.error();
-  return fit_grids(*grids, gear);
+Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal, const MeasuredInput& measured) {
+  auto fit = fit_measured(measured, grid_of(nominal));
+  if (!fit) return fit.error();
+  CorrectedGear corrected{nominal.corrected(fit->rings), std::move(*fit), measured.files, {}};
+  corrected.grid = std::move(corrected.fit.grid);
+  if (!corrected.grid.empty()) return corrected;
+  auto grid = inspection::inspection_grid(drawn_solid(nominal));
+  if (!grid) return grid.error();
+  corrected.grid = std::move(*grid);
+  return corrected;
 }
 
 std::string correction_json(const CorrectedGear& corrected) {

@@ -13,6 +13,7 @@
 #include "geometry/inspection/grid.h"
 #include "geometry/inspection/tooth_index.h"
 #include "geometry/modification/flank_correction.h"
+#include "geometry/tooth_space/toothed_solid.h"
 
 namespace toothpath::job {
 
@@ -44,6 +45,8 @@ struct GridOfGear {
   std::function<Result<std::vector<inspection::InspectionPoint>>(int rows, int columns)> nominal;
   std::function<Vec2(const inspection::InspectionPoint&)> place{};  ///< along the face, height: any unit
   std::function<double(int zone)> foot{};  ///< height at which flanks begin, below all points of the grid
+  /// Of gears whose flanks are smooth sheets: files of points are put on them, and tell how the teeth stand.
+  std::optional<tooth_space::ToothedSolid> solid = {};
 };
 /// As above, of any gear type.
 [[nodiscard]] Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file,
@@ -60,6 +63,11 @@ struct FittedCorrection {
   std::vector<FittedFlank> flanks;
   inspection::IndexOfTeeth index = {};  ///< of the last file that measured several teeth
   std::vector<std::string> warnings = {};
+  std::vector<inspection::InspectionPoint> grid = {};  ///< of the first file that is one
+  /// What was measured at a place of the face and a height, as `GridOfGear::place` has them; > 0: material left. mm
+  [[nodiscard]] double deviation_mm(int zone, int side, const Vec2& place) const {
+    return -rings[std::size_t(zone)]->side(side).at(-place.y(), place.x()).value;
+  }
 };
 
 /// The files that a command names, in the order of the cuts.
@@ -68,20 +76,10 @@ struct MeasuredInput {
   std::optional<double> ball_diameter_mm = {};  ///< points are the centres of a ball of that diameter
 };
 
-/// The deviation of one flank as measured files tell of it: their fit, on minus the height (theta) and the face.
-struct MeasuredField {
-  int zone = 0, side = 1;
-  modification::FlankCorrection field;  ///< the offset that answers it
-  /// > 0: material left.
-  [[nodiscard]] double deviation_mm(double face, double height) const { return -field.at(-height, face).value; }
-};
-/// Reads files that are all grids of this gear, in the order of the cuts; their deviations add up and are fitted flank
-/// by flank, in the order zone, side +1, side -1. Refused: as `parse_measured`; a file that cannot be read
-/// (`file_access`); files of points, which are put on face gears only; a ball's diameter; grids of different size.
-[[nodiscard]] Result<std::vector<MeasuredField>> fit_measured(const MeasuredInput& measured, const GridOfGear& gear);
-
-/// The offsets that answer them, a ring each. @param file  named with their flanks
-[[nodiscard]] FittedCorrection correction_of(std::vector<MeasuredField> fields, const std::string& file);
+/// Reads the files in the order of the cuts, grids or points each; their fits add up. Refused: as `parse_measured` and
+/// `parse_measured_points`; a file that cannot be read (`file_access`); files of points where the gear has no `solid`;
+/// a ball's diameter beside a grid, which holds deviations already; grids of different size.
+[[nodiscard]] Result<FittedCorrection> fit_measured(const MeasuredInput& measured, const GridOfGear& gear);
 
 /// A gear whose target answers measured files.
 struct CorrectedGear {
@@ -90,8 +88,7 @@ struct CorrectedGear {
   std::vector<std::string> files;
   std::vector<inspection::InspectionPoint> grid;  ///< where correction.json tells the target
 };
-/// Reads the files in their order, grids or points each, and fits them; the fits add up. Errors as above; a file that
-/// cannot be read is `file_access`; a ball's diameter beside a grid, which holds deviations already.
+/// Errors: those of `fit_measured`.
 [[nodiscard]] Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal, const MeasuredInput& measured);
 
 /// correction.json: files, and for every flank degrees, sizes measured and left, and the offset of the target at the

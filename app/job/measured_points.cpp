@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/face_gear/part.h"
 #include "geometry/inspection/table_text.h"
 
 namespace toothpath::job {
@@ -38,7 +37,7 @@ bool looks_like_grid(std::string_view text) {
 }
 
 Result<MeasuredPoints> parse_measured_points(std::string_view text, const std::string& file,
-                                             const face_gear::FaceGear& gear, double ball_diameter_mm) {
+                                             const tooth_space::ToothedSolid& gear, double ball_diameter_mm) {
   const auto read = inspection::looks_like_dmis(text) ? inspection::parse_dmis_results(text, file)
                                                       : inspection::parse_plain_points(text, file);
   if (!read) return read.error();
@@ -48,23 +47,32 @@ Result<MeasuredPoints> parse_measured_points(std::string_view text, const std::s
   return MeasuredPoints{file, std::move(*placed), read->other_features};
 }
 
-Result<FittedCorrection> fit_points(const face_gear::FaceGear& gear, const MeasuredPoints& measured) {
-  const auto grid = inspection::inspection_grid(drawn_solid(gear));
+Result<FittedCorrection> fit_points(const GridOfGear& gear, const MeasuredPoints& measured) {
+  const auto grid = inspection::inspection_grid(*gear.solid);
   if (!grid) return grid.error();
   FittedCorrection result;
   std::vector<inspection::ToothPlace> places;
-  for (int zone = 0; zone < int(gear.rings().size()); ++zone) {
+  for (int zone = 0; zone < int(gear.zones); ++zone) {
     modification::RingCorrection ring;
     for (const int side : {1, -1}) {
       std::vector<modification::FlankDeviation> nominal;
-      for (const auto& p : *grid)
-        if (p.zone == zone && p.side == side) nominal.push_back({p.row, p.column, p.theta, radius(p.p), 0});
+      for (const auto& p : *grid) {
+        if (p.zone != zone || p.side != side) continue;
+        const Vec2 place = gear.place(p);
+        nominal.push_back({p.row, p.column, -place.y(), place.x(), 0});
+      }
       std::vector<modification::ScatteredDeviation> flank;
-      for (const auto& p : measured.points)
-        if (p.zone == zone && p.side == side) flank.push_back({p.tooth, p.theta, p.radius_mm, p.deviation_mm});
+      for (const auto& p : measured.points) {
+        if (p.zone != zone || p.side != side) continue;
+        inspection::InspectionPoint foot{zone, side};
+        foot.theta = p.theta;
+        foot.B = p.B;
+        foot.p = p.foot;
+        const Vec2 place = gear.place(foot);
+        flank.push_back({p.tooth, -place.y(), place.x(), p.deviation_mm});
+      }
       if (flank.empty()) return in_file(measured, zone, side, "no point was measured on it; every flank needs some");
-      auto fit = modification::FlankCorrection::fit_scattered(flank, nominal,
-                                                              gear.rings()[std::size_t(zone)].surface.shaper.theta_t);
+      auto fit = modification::FlankCorrection::fit_scattered(flank, nominal, -gear.foot(zone));
       if (!fit) return in_file(measured, zone, side, fit.error().message);
       result.flanks.push_back({zone, side, measured.file, int(fit->teeth.size()), fit->field.residual()});
       for (const auto& tooth : fit->teeth) places.push_back({zone, side, tooth.tooth, tooth.middle_mm});
@@ -72,7 +80,7 @@ Result<FittedCorrection> fit_points(const face_gear::FaceGear& gear, const Measu
     }
     result.rings.push_back(std::make_shared<modification::RingCorrection>(std::move(ring)));
   }
-  auto index = inspection::index_of_teeth(gear, places);
+  auto index = inspection::index_of_teeth(*gear.solid, places);
   if (!index) return index.error();
   result.index = std::move(*index);
   if (measured.other_features)

@@ -32,10 +32,11 @@ struct MeasuredPoints {
 /// size speaks of another unit. `file` stands in the messages.
 /// @param ball_diameter_mm  > 0: the points are centres of a ball of that diameter
 [[nodiscard]] Result<MeasuredPoints> parse_measured_points(std::string_view text, const std::string& file,
-                                                           const face_gear::FaceGear& gear, double ball_diameter_mm);
+                                                           const tooth_space::ToothedSolid& gear,
+                                                           double ball_diameter_mm);
 
 /// Fits one file: a shape for all teeth, and for each tooth how far it stands off. Refused, at the file: a flank
-/// without points, or too few of them (`FlankCorrection::fit_scattered`).
-[[nodiscard]] Result<FittedCorrection> fit_points(const face_gear::FaceGear& gear, const MeasuredPoints& measured);
+/// without points, or too few of them (`FlankCorrection::fit_scattered`). The gear has a `solid`.
+[[nodiscard]] Result<FittedCorrection> fit_points(const GridOfGear& gear, const MeasuredPoints& measured);
 
 }  // namespace toothpath::job

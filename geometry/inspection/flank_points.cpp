@@ -6,15 +6,12 @@
 #include <limits>
 
 #include "geometry/base/angle.h"
-#include "geometry/face_gear/flank_foot.h"
-#include "geometry/face_gear/inverse.h"
-#include "geometry/face_gear/part.h"
 #include "geometry/inspection/grid.h"
 
 namespace toothpath::inspection {
 namespace {
 
-using Parameters = face_gear::FlankParameters<double>;
+using tooth_space::ToothSpace;
 
 /// A normal in a file and that of the flank: at least this cosine between them.
 constexpr double kSameNormal = 0.5;
@@ -22,13 +19,13 @@ constexpr double kSameNormal = 0.5;
 constexpr double kTwiceAsFar = 2, kAlike = 0.002;
 constexpr std::size_t kHintPoints = 200;
 
-/// A flank of one side of one ring, and where searches on it begin.
+/// A flank of one side of one ring in space 0, and where searches on it begin.
 struct Sheet {
   int zone, side;
-  const face_gear::FaceGearRing* ring;
+  const ToothSpace* space;
   struct Start {
-    double r, z;
-    Parameters at;
+    Vec3 p;
+    double s, h, u, v;
   };
   std::vector<Start> starts;
 };
@@ -37,22 +34,23 @@ struct Sheet {
 struct Candidate {
   FlankPoint point;
   double beyond = 0;  ///< by which the foot lies beyond the ends of the flank, mm; <= 0: on it
-  const char* end = "";
+  std::string end;
   Vec3 n = Vec3::Zero();  ///< at the foot, on its tooth
 };
 
 class Placing {
  public:
-  Placing(const face_gear::FaceGear& gear, const std::vector<InspectionPoint>& grid, double ball_radius)
+  Placing(const tooth_space::ToothedSolid& gear, const std::vector<InspectionPoint>& grid, double ball_radius)
       : gear_(gear), ball_(ball_radius) {
-    for (std::size_t zone = 0; zone < gear.rings().size(); ++zone)
+    for (const auto& ring : gear.rings)
       for (const int side : {1, -1}) {
-        Sheet sheet{int(zone), side, &gear.rings()[zone], {}};
-        const auto& shaper = sheet.ring->surface.shaper;
+        Sheet sheet{ring.zone, side, ring.space, {}};
         for (const auto& p : grid) {
-          if (p.zone != int(zone) || p.side != side) continue;
-          const Vec3 q = p.p + ball_radius * p.n;
-          sheet.starts.push_back({radius(q), q.z(), {p.theta - ball_radius * shaper.cos_bb / shaper.r_b, p.B}});
+          if (p.zone != ring.zone || p.side != side) continue;
+          const auto q = ring.space->point(tooth_space::flank_of(side), p.theta, p.B);
+          if (!q) continue;
+          const Vec3 x = q->p + ball_radius * q->n;
+          sheet.starts.push_back({x, gear.chart().along(x), gear.chart().up(x), p.theta, p.B});
         }
         sheets_.push_back(std::move(sheet));
       }
@@ -75,56 +73,58 @@ class Placing {
 
  private:
   [[nodiscard]] std::optional<Candidate> against(const Sheet& sheet, const Vec3& x) const {
-    const auto& f = sheet.ring->surface;
-    const double r = radius(x);
+    const auto& chart = gear_.chart();
+    const double s = chart.along(x), h = chart.up(x), pitch = gear_.pitch();
     const Sheet::Start* start = nullptr;
     double nearest = std::numeric_limits<double>::infinity();
-    for (const auto& s : sheet.starts)
-      if (const double off = std::hypot(s.r - r, s.z - x.z()); off < nearest) {
+    for (const auto& q : sheet.starts)
+      if (const double off = std::hypot(q.s - s, q.h - h); off < nearest) {
         nearest = off;
-        start = &s;
+        start = &q;
       }
-    if (!start || nearest > 0.5 * (gear_.outer_radius() - gear_.inner_radius()) + 2 * f.shaper.m_t) return {};
-    const auto foot = face_gear::flank_foot<double>(f, sheet.side, x, start->at);
+    const auto& outline = sheet.space->outline();
+    if (!start || nearest > 0.5 * (outline.s_to - outline.s_from) + 2 * gear_.module_mm) return {};
+    const double spaces = std::round((azimuth(x) - azimuth(start->p)) / pitch);
+    const auto foot =
+        sheet.space->foot(tooth_space::flank_of(sheet.side), turned(x, -spaces * pitch), start->u, start->v);
     if (!foot) return {};
-    const double teeth = std::round(foot->turn / f.pitch), turn = foot->turn - teeth * f.pitch;
-    const int count = gear_.parameters().teeth;
-    const double distance = sheet.side * f.M2 * turn;
     Candidate c;
+    const int tooth = int(spaces) + (sheet.side > 0 ? 0 : 1);
     c.point = {sheet.zone,
                sheet.side,
-               ((int(teeth) % count) + count) % count,
-               foot->at.theta + distance * f.shaper.cos_bb / f.shaper.r_b,
-               foot->at.B,
-               0,
-               distance - ball_};
-    c.n = foot->n;
-    const Vec3 p = f.flank_housing(sheet.side, c.point.theta, c.point.B);
-    c.point.radius_mm = radius(p);
-    if (!(f.flank_J(sheet.side, c.point.theta, c.point.B) > 0)) return {};
-    note_ends(*sheet.ring, p, c);
+               (tooth % gear_.teeth + gear_.teeth) % gear_.teeth,
+               foot->u,
+               foot->v,
+               foot->at.p,
+               radius(foot->at.p),
+               foot->distance - ball_};
+    c.n = turned(foot->at.n, spaces * pitch);
+    note_ends(sheet, *foot, c);
     return c;
   }
 
   /// Which end of the flank the foot lies nearest to, or beyond.
-  void note_ends(const face_gear::FaceGearRing& ring, const Vec3& p, Candidate& c) const {
-    const auto& f = ring.surface;
-    const double r = c.point.radius_mm, arc = f.shaper.r_b * f.shaper.theta_t;  // of the involute where it ends
+  void note_ends(const Sheet& sheet, const tooth_space::PatchFoot& foot, Candidate& c) const {
+    const auto& outline = sheet.space->outline();
+    const double s = outline.chart.along(foot.at.p), mm_per_u = foot.at.pu.norm();
+    const auto borders = sheet.space->borders(tooth_space::flank_of(sheet.side));
+    const double fillet = sheet.side > 0 ? borders.to : borders.from, tip = sheet.side > 0 ? borders.from : borders.to;
     c.beyond = -std::numeric_limits<double>::infinity();
-    const auto end = [&](double beyond, const char* name) {
+    const auto end = [&](double beyond, std::string name) {
       if (beyond > c.beyond) {
         c.beyond = beyond;
-        c.end = name;
+        c.end = std::move(name);
       }
     };
-    end(ring.zone.inner_radius_mm - r, "the inner end of the teeth");
-    end(r - ring.zone.outer_radius_mm, "the outer end of the teeth");
-    if (r > std::abs(f.E)) end(p.z() - f.z_tip(r), "the tip");
-    end((c.point.theta - f.shaper.theta_t) * arc, "the line where the fillet begins");
-    end(-c.point.theta * arc, "the start of the involute");
+    end(outline.s_from - s, fmt::format("the {} end of the teeth", outline.from));
+    end(s - outline.s_to, fmt::format("the {} end of the teeth", outline.to));
+    end(outline.chart.up(foot.at.p) - sheet.space->tip(s), "the tip");
+    const double down = tip > fillet ? -1 : 1;  // sense of u towards the fillet
+    end(down * (foot.u - fillet) * mm_per_u, "the line where the fillet begins");
+    if (gear_.flanks_begin) end(down * (*gear_.flanks_begin - foot.u) * mm_per_u, "the start of the flank");
   }
 
-  const face_gear::FaceGear& gear_;
+  const tooth_space::ToothedSolid& gear_;
   double ball_;
   std::vector<Sheet> sheets_;
 };
@@ -192,9 +192,9 @@ Diagnostic off_every_flank(const Placing& placing, const PointFile& measured, co
 
 }  // namespace
 
-Result<std::vector<FlankPoint>> place_on_flanks(const face_gear::FaceGear& gear, const PointFile& measured,
+Result<std::vector<FlankPoint>> place_on_flanks(const tooth_space::ToothedSolid& gear, const PointFile& measured,
                                                 double ball_radius_mm) {
-  const auto grid = inspection_grid(drawn_solid(gear));
+  const auto grid = inspection_grid(gear);
   if (!grid) return grid.error();
   const Placing placing(gear, *grid, ball_radius_mm);
   std::vector<FlankPoint> out;

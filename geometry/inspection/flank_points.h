@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "geometry/face_gear/gear.h"
 #include "geometry/inspection/point_file.h"
+#include "geometry/tooth_space/toothed_solid.h"
 
 namespace toothpath::inspection {
 
@@ -13,22 +13,22 @@ inline constexpr double kFarthestFromFlank = 0.5;
 /// A foot may lie beyond the ends of a flank by so much, mm: a burr, a chamfer, a frame that is a little off.
 inline constexpr double kBeyondFlank = 0.05;
 
-/// A measured point against the flank of its tooth; the foot is that of tooth 0.
+/// A measured point against the flank of its tooth; the foot is that of space 0.
 struct FlankPoint {
-  int zone = 0;             ///< ring, from the inside
-  int side = 1;             ///< +1 or -1
-  int tooth = 0;            ///< 0 .. teeth - 1; the flanks of tooth k are those of tooth 0 turned by k pitches
-  double theta = 0, B = 0;  ///< of the foot
-  double radius_mm = 0;     ///< of the foot
-  double deviation_mm = 0;  ///< distance from the exact flank, positive: material left
+  int zone = 0;              ///< of the job
+  int side = 1;              ///< +1 or -1
+  int tooth = 0;             ///< 0 .. teeth - 1; space k lies between flank +1 of tooth k and flank -1 of tooth k + 1
+  double theta = 0, B = 0;   ///< of the foot: its (u, v)
+  Vec3 foot = Vec3::Zero();  ///< in space 0
+  double radius_mm = 0;      ///< of the foot
+  double deviation_mm = 0;   ///< distance from the exact flank, positive: material left
 };
 
-/// One for each point of the file, in its order. The distance is exact: parallel surfaces of a flank are that flank
-/// turned about the axis (docs/face_gear.md 5).
+/// One for each point of the file, in its order. The distance is that to the nearest place of the exact flank.
 /// @param ball_radius_mm  > 0: the points are centres of a probe's ball of that radius, which touched the flank
 /// Refused, at the place of the point: one that lies on no flank, or on two alike. Where all points are off in the same
 /// way, the message says so: another unit, centres of a ball.
-[[nodiscard]] Result<std::vector<FlankPoint>> place_on_flanks(const face_gear::FaceGear& gear,
+[[nodiscard]] Result<std::vector<FlankPoint>> place_on_flanks(const tooth_space::ToothedSolid& gear,
                                                               const PointFile& measured, double ball_radius_mm = 0);
 
 }  // namespace toothpath::inspection

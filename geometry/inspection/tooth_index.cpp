@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "geometry/face_gear/part.h"
 #include "geometry/inspection/grid.h"
 
 namespace toothpath::inspection {
@@ -21,17 +20,40 @@ ByTooth by_tooth(const std::vector<ToothPlace>& places, int zone, int side, int 
   return out;
 }
 
-double middle_radius(const face_gear::FaceGearRing& ring) {
-  return 0.5 * (ring.zone.inner_radius_mm + ring.zone.outer_radius_mm);
+/// The middle of the flanks of one zone, both of space 0.
+struct Middle {
+  tooth_space::PatchPoint plus, minus;
+  const tooth_space::ToothSpace* space = nullptr;
+  [[nodiscard]] double radius_mm() const {
+    const auto& outline = space->outline();
+    return outline.chart.r(0.5 * (outline.s_from + outline.s_to), outline.chart.up(plus.p));
+  }
+  /// A flank turned by an angle stands this times the angle off along its normal there.
+  [[nodiscard]] double lever(int side) const {
+    const auto& at = side > 0 ? plus : minus;
+    return at.p.x() * at.n.y() - at.p.y() * at.n.x();
+  }
+};
+
+Result<Middle> middle_of(const tooth_space::ToothedSolid& gear, const tooth_space::ToothedSolid::Ring& ring) {
+  const auto grid = inspection_grid(gear);
+  if (!grid) return grid.error();
+  const InspectionOptions options;
+  Middle out;
+  out.space = ring.space;
+  for (const auto& p : *grid)
+    if (p.zone == ring.zone && p.row == options.rows / 2 && p.column == options.columns / 2)
+      if (const auto q = ring.space->point(tooth_space::flank_of(p.side), p.theta, p.B))
+        (p.side > 0 ? out.plus : out.minus) = *q;
+  return out;
 }
 
-std::optional<PitchDeviation> pitch_of(const face_gear::FaceGearRing& ring, int zone, int side, const ByTooth& off) {
+std::optional<PitchDeviation> pitch_of(const Middle& middle, int zone, int side, const ByTooth& off) {
   PitchDeviation out;
   out.zone = zone;
   out.side = side;
-  out.radius_mm = middle_radius(ring);
-  // A flank turned by an angle stands M2 times that angle off along its normals, everywhere.
-  const double arc = side * out.radius_mm / ring.surface.M2;
+  out.radius_mm = middle.radius_mm();
+  const double arc = out.radius_mm / middle.lever(side);
   double low = INFINITY, high = -INFINITY;
   for (std::size_t k = 0; k < off.size(); ++k) {
     if (!off[k]) continue;
@@ -52,50 +74,41 @@ std::optional<PitchDeviation> pitch_of(const face_gear::FaceGearRing& ring, int 
   return out;
 }
 
-/// Height of a ball between flank +1 of tooth 0 and flank -1 of tooth 1 for a millimetre of material on either.
-Result<Vec2> rise_of_ball(const face_gear::FaceGear& gear, std::size_t zone) {
-  const auto grid = inspection_grid(drawn_solid(gear));
-  if (!grid) return grid.error();
-  int rows = 0, columns = 0;
-  for (const auto& p : *grid) {
-    rows = std::max(rows, p.row + 1);
-    columns = std::max(columns, p.column + 1);
-  }
-  const InspectionPoint *plus = nullptr, *minus = nullptr;
-  for (const auto& p : *grid)
-    if (p.zone == int(zone) && p.row == rows / 2 && p.column == columns / 2) (p.side > 0 ? plus : minus) = &p;
-  const double pitch = gear.pitch();
-  const Vec3 n_plus = plus->n, n_minus = turned(minus->n, pitch),
-             middle = 0.5 * (plus->p + turned(minus->p, pitch)).cwiseProduct(Vec3(1, 1, 0));
-  const Vec3 outward = middle.normalized(), along = Vec3::UnitZ().cross(outward);
-  const auto& f = gear.rings()[zone].surface;
-  const double r = middle_radius(gear.rings()[zone]), step = 1e-3 * r;
-  const double slope = (f.z_tip(r + step) - f.z_tip(r - step)) / (2 * step);
-  const Vec3 up = (Vec3::UnitZ() - slope * outward).normalized();
+/// Height of a ball between both flanks of a space for a millimetre of material on either.
+Vec2 rise_of_ball(const Middle& middle) {
+  const tooth_space::Chart& chart = middle.space->outline().chart;
+  const double about = azimuth(Vec3(0.5 * (middle.plus.p + middle.minus.p))), s = chart.along(middle.plus.p),
+               step = 1e-3 * middle.radius_mm();
+  const double slope = (middle.space->tip(s + step) - middle.space->tip(s - step)) / (2 * step);
+  const Vec3 along(-std::sin(about), std::cos(about), 0),
+      up = (chart.up_at(about) - slope * chart.along_at(about)).normalized();
   Eigen::Matrix2d touches;
-  touches << n_plus.dot(along), n_plus.dot(up), n_minus.dot(along), n_minus.dot(up);
-  return Vec2(touches.inverse().row(1).transpose());
+  touches << middle.plus.n.dot(along), middle.plus.n.dot(up), middle.minus.n.dot(along), middle.minus.n.dot(up);
+  return touches.inverse().row(1).transpose();
 }
 
 }  // namespace
 
-Result<IndexOfTeeth> index_of_teeth(const face_gear::FaceGear& gear, const std::vector<ToothPlace>& places) {
+Result<IndexOfTeeth> index_of_teeth(const tooth_space::ToothedSolid& gear, const std::vector<ToothPlace>& places) {
   IndexOfTeeth out;
-  const int teeth = gear.parameters().teeth;
-  for (std::size_t zone = 0; zone < gear.rings().size(); ++zone) {
-    const auto& ring = gear.rings()[zone];
-    const ByTooth plus = by_tooth(places, int(zone), 1, teeth), minus = by_tooth(places, int(zone), -1, teeth);
+  const int teeth = gear.teeth;
+  std::vector<tooth_space::ToothedSolid::Ring> rings = gear.rings;
+  std::sort(rings.begin(), rings.end(), [](const auto& a, const auto& b) { return a.zone < b.zone; });
+  for (const auto& ring : rings) {
+    const auto middle = middle_of(gear, ring);
+    if (!middle) return middle.error();
+    const int zone = ring.zone;
+    const ByTooth plus = by_tooth(places, zone, 1, teeth), minus = by_tooth(places, zone, -1, teeth);
     for (const int side : {1, -1})
-      if (auto pitch = pitch_of(ring, int(zone), side, side > 0 ? plus : minus)) out.pitch.push_back(*pitch);
-    const auto rise = rise_of_ball(gear, zone);
-    if (!rise) return rise.error();
-    RunOut run_out{int(zone), middle_radius(ring), 0, 0, false};
+      if (auto pitch = pitch_of(*middle, zone, side, side > 0 ? plus : minus)) out.pitch.push_back(*pitch);
+    const Vec2 rise = rise_of_ball(*middle);
+    RunOut run_out{zone, middle->radius_mm(), 0, 0, false};
     double low = INFINITY, high = -INFINITY;
     for (std::size_t k = 0; k < plus.size(); ++k) {
       const auto& other = minus[(k + 1) % plus.size()];
       if (!plus[k] || !other) continue;
       ++run_out.spaces;
-      const double height = rise->dot(Vec2(*plus[k], *other));
+      const double height = rise.dot(Vec2(*plus[k], *other));
       low = std::min(low, height);
       high = std::max(high, height);
     }

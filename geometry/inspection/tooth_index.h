@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "geometry/face_gear/gear.h"
+#include "geometry/base/result.h"
+#include "geometry/tooth_space/toothed_solid.h"
 
 namespace toothpath::inspection {
 
@@ -41,7 +42,7 @@ struct IndexOfTeeth {
 };
 
 /// Errors: those of `inspection_grid`.
-[[nodiscard]] Result<IndexOfTeeth> index_of_teeth(const face_gear::FaceGear& gear,
+[[nodiscard]] Result<IndexOfTeeth> index_of_teeth(const tooth_space::ToothedSolid& gear,
                                                   const std::vector<ToothPlace>& places);
 
 }  // namespace toothpath::inspection

@@ -160,7 +160,7 @@ TEST(LoadedBevelCommand, RefusesMeasuredFilesThatDoNotFit) {
     EXPECT_NE(run.err.find("bad.csv:"), std::string::npos) << run.err;
     EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
   };
-  refused("1 2 3\n4 5 6\n", "files of points are put on face gears only");
+  refused("1 2 3\n4 5 6\n", "files of points are not put on this gear");
   refused(good.substr(0, good.rfind('\n', good.size() / 2) + 1), "is missing of");
   refused("zone,flank,row,column,x,y,z,i,j,k,deviation_um\n0,L,0,0,1,2,3,0,0,1,5\n", "at least 5 x 9 are needed");
   refused(good, "a ball's diameter is for files of points", {"--ball-diameter", "3"});

@@ -227,7 +227,7 @@ std::vector<ByteReader> measured_points_readers() {
   }
   const auto read = [](std::string_view bytes) {
     const auto text = plain_text(std::string(bytes), "measured.txt");
-    return text ? fault_of(job::parse_measured_points(*text, "measured.txt", gear, 0)) : fault_of(text);
+    return text ? fault_of(job::parse_measured_points(*text, "measured.txt", drawn_solid(gear), 0)) : fault_of(text);
   };
   return {{"measured_plain", "0123456789.,;-+eE \"\t\r\n[]PXYZmin", {plain, saved}, read},
           {"measured_dmis", "0123456789.,-+$()=/FACRTPOLEU \n", {dmis}, read},

@@ -99,16 +99,15 @@ Result<CutWalls> walls_as_measured(const bevel_gear::BevelGear& gear, const job:
   auto fitted = job::fit_measured(measured, grid);
   if (!fitted) return fitted.error();
   CutWalls out{"measured", {}, {}};
-  for (const auto& f : *fitted) {
-    const auto& r = f.field.residual();
+  for (const auto& f : fitted->flanks) {
+    const auto& r = f.residual;
     out.notes.push_back(
         fmt::format("half {}, wall {}: {} measured places up to {:.2f} um off, met by the fit within "
                     "{:.2f} um",
                     f.zone, letter_of(f.side), r.points, r.measured_max_mm * app::kUm, r.residual_max_mm * app::kUm));
   }
-  out.left = [fields = std::make_shared<const std::vector<job::MeasuredField>>(std::move(*fitted))](
-                 int half, int sigma, const bevel_gear::ConePoint& at) {
-    return (*fields)[static_cast<std::size_t>(2 * half + (sigma > 0 ? 0 : 1))].deviation_mm(at.ell, at.height);
+  out.left = [fit = std::move(*fitted)](int half, int sigma, const bevel_gear::ConePoint& at) {
+    return fit.deviation_mm(half, sigma, {at.ell, at.height});
   };
   return out;
 }

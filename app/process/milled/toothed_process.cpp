@@ -89,6 +89,7 @@ Result<process::Correction> ToothedProcess::correct(const job::MeasuredInput& me
 job::GridOfGear ToothedProcess::measured_grid() const {
   job::GridOfGear grid;
   grid.zones = std::size_t(gear_.part->zones());
+  grid.solid = gear_.solid;
   grid.nominal = [this](int rows, int columns) { return inspection::inspection_grid(gear_.solid, {rows, columns}); };
   std::vector<std::optional<tooth_space::FlankRectangle>> flanks_of_zones;
   for (int zone = 0; zone < gear_.part->zones(); ++zone)
@@ -111,18 +112,18 @@ process::ValueOrErrors<process::CutFlanks> ToothedProcess::measured(const job::M
   if (!places) return std::vector{places.error()};
   process::CutFlanks out;
   out.route = "measured";
-  for (const job::MeasuredField& field : *fitted) {
-    process::CutFlanks::Flank flank{field.zone, field.side, kRows, kColumns, {}, {}, {}};
-    for (const inspection::InspectionPoint& at : *places) {
-      if (at.zone != field.zone || at.side != field.side) continue;
-      const Vec2 place = grid.place(at);
-      flank.nominal.push_back(at.p);
-      flank.normals.push_back(at.n);
-      flank.deviation_mm.push_back(field.deviation_mm(place.x(), place.y()));
+  for (int zone = 0; zone < gear_.part->zones(); ++zone)
+    for (const int side : {1, -1}) {
+      process::CutFlanks::Flank flank{zone, side, kRows, kColumns, {}, {}, {}};
+      for (const inspection::InspectionPoint& at : *places) {
+        if (at.zone != zone || at.side != side) continue;
+        flank.nominal.push_back(at.p);
+        flank.normals.push_back(at.n);
+        flank.deviation_mm.push_back(fitted->deviation_mm(zone, side, grid.place(at)));
+      }
+      out.flanks.push_back(std::move(flank));
     }
-    out.flanks.push_back(std::move(flank));
-    out.warnings.push_back(process::words_of_fit(field.zone, field.side, field.field.residual()));
-  }
+  for (const auto& f : fitted->flanks) out.warnings.push_back(process::words_of_fit(f.zone, f.side, f.residual));
   return out;
 }
 Result<process::Correction> ToothedProcess::answer(const job::MeasuredInput& measured) {
@@ -130,7 +131,9 @@ Result<process::Correction> ToothedProcess::answer(const job::MeasuredInput& mea
   auto fitted = job::fit_measured(measured, grid);
   if (!fitted) return fitted.error();
   process::Correction out;
-  const job::FittedCorrection fit = job::correction_of(std::move(*fitted), measured.files.back());
+  const job::FittedCorrection& fit = *fitted;
+  out.index = fit.index;
+  out.warnings = fit.warnings;
   auto aimed = tooth_space::modified_part(gear_.part, job_.modifications, fit.rings);
   if (auto* refusal = aimed.refused())
     return process::located(job_, "gear." + refusal->key, std::move(refusal->diagnostic));

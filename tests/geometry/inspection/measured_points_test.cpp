@@ -52,7 +52,7 @@ TEST(MeasuredPoints, EveryPointIsPutOnTheFlankItWasMadeOn) {
         const auto seen = test::seen(grid, teeth, gear.pitch(), gear.rings()[0].surface.M2, errors, ball);
         // Without normals a ball that touches one flank may nearly touch the other: the file must then say which.
         if (ball > 0 && !normals) continue;
-        const auto placed = inspection::place_on_flanks(gear, file_of(seen, normals), ball);
+        const auto placed = inspection::place_on_flanks(drawn_solid(gear), file_of(seen, normals), ball);
         ASSERT_TRUE(placed) << name << ": " << placed.error().text();
         ASSERT_EQ(placed->size(), seen.size());
         double worst = 0, worst_theta = 0, worst_B = 0;
@@ -84,7 +84,7 @@ TEST(MeasuredPoints, PointsOnNoFlankAreRefusedAtTheirPlaceWithWhatIsWrong) {
   const auto refused = [&](const std::function<Vec3(const test::SeenPoint&, std::size_t)>& moved, bool normals = true) {
     auto copy = seen;
     for (std::size_t k = 0; k < copy.size(); ++k) copy[k].p = moved(seen[k], k);
-    const auto placed = inspection::place_on_flanks(gear, file_of(copy, normals));
+    const auto placed = inspection::place_on_flanks(drawn_solid(gear), file_of(copy, normals));
     return placed ? std::string("taken") : placed.error().text();
   };
   const auto has = [](const std::string& text, const std::string& part) {
@@ -150,7 +150,7 @@ TEST(MeasuredPoints, PitchAndRunOutOfPlantedErrorsAreFoundAgain) {
     errors.shape = [](const auto& p) { return 0.004 + 0.002 * p.row - 0.0002 * p.column * p.column; };
     errors.noise = 0.0005;
     const auto seen = test::seen(grid, test::teeth_of(N), gear.pitch(), gear.rings()[0].surface.M2, errors);
-    const auto placed = inspection::place_on_flanks(gear, file_of(seen, false));
+    const auto placed = inspection::place_on_flanks(drawn_solid(gear), file_of(seen, false));
     ASSERT_TRUE(placed) << name << placed.error().text();
     std::vector<inspection::ToothPlace> places;
     for (int zone = 0; zone < int(gear.rings().size()); ++zone)
@@ -168,7 +168,7 @@ TEST(MeasuredPoints, PitchAndRunOutOfPlantedErrorsAreFoundAgain) {
         EXPECT_LT(worst, 0.0003) << name;  // noise of 0.5 um over all teeth
         for (const auto& t : fit->teeth) places.push_back({zone, side, t.tooth, t.middle_mm});
       }
-    const auto index = inspection::index_of_teeth(gear, places);
+    const auto index = inspection::index_of_teeth(drawn_solid(gear), places);
     ASSERT_TRUE(index);
     ASSERT_EQ(index->pitch.size(), 2 * gear.rings().size());
     const double within = 0.0005;  // the noise of one point; a mean has less
@@ -231,7 +231,7 @@ TEST(MeasuredPoints, RunOutOfAGearBesideItsAxisIsThatOfABallInItsSpaces) {
   PlantedErrors errors;
   errors.shifted = beside;
   const auto seen = test::seen(grid, test::teeth_of(N), gear.pitch(), gear.rings()[0].surface.M2, errors);
-  const auto placed = inspection::place_on_flanks(gear, file_of(seen, false));
+  const auto placed = inspection::place_on_flanks(drawn_solid(gear), file_of(seen, false));
   ASSERT_TRUE(placed) << placed.error().text();
   std::vector<inspection::ToothPlace> places;
   for (const int side : {1, -1}) {
@@ -239,7 +239,7 @@ TEST(MeasuredPoints, RunOutOfAGearBesideItsAxisIsThatOfABallInItsSpaces) {
     ASSERT_TRUE(fit);
     for (const auto& t : fit->teeth) places.push_back({0, side, t.tooth, t.middle_mm});
   }
-  const auto index = inspection::index_of_teeth(gear, places);
+  const auto index = inspection::index_of_teeth(drawn_solid(gear), places);
   ASSERT_TRUE(index && index->run_out.size() == 1);
   // The ball that touches both flanks in their middles: its centre lies above one and in the middle of the space.
   const inspection::InspectionPoint* middle = nullptr;
@@ -270,7 +270,8 @@ TEST(MeasuredPoints, RunOutOfAGearBesideItsAxisIsThatOfABallInItsSpaces) {
 TEST(MeasuredPoints, FewTeethSayHowFew) {
   const auto gear = test::made(test::small_spur());
   const auto index = inspection::index_of_teeth(
-      gear, {{0, 1, 4, 0.010}, {0, 1, 5, 0.004}, {0, 1, 20, -0.010}, {0, -1, 5, 0.001}, {0, -1, 6, 0.001}});
+      drawn_solid(gear),
+      {{0, 1, 4, 0.010}, {0, 1, 5, 0.004}, {0, 1, 20, -0.010}, {0, -1, 5, 0.001}, {0, -1, 6, 0.001}});
   ASSERT_TRUE(index);
   ASSERT_EQ(index->pitch.size(), 2u);
   const double arc = 62.5 / gear.rings()[0].surface.M2;
