@@ -8,6 +8,7 @@
 #include "app/job/file.h"
 #include "app/job/measured_file.h"
 #include "app/job/measured_points.h"
+#include "app/process/flow/stages.h"
 #include "app/process/gear_of_job.h"
 #include "app/process/milled/proof.h"
 #include "cam/cut/swept_path.h"
@@ -441,6 +442,41 @@ TEST(Correction, ARunAnswersPointsAndTellsPitchAndRunOut) {
   const auto refused = run_program(
       {"correct", dir / "job.toml", "--measured", dir / "r.dmo", "--ball-diameter", "0", "--out", dir / "out"});
   EXPECT_EQ(refused.exit_code, 2);
+}
+
+/// A cylindrical gear, a point at every place of the inspection grid of all of its teeth: a bow on every flank, and
+/// teeth that stand off by what an eccentric fixture leaves.
+TEST(Correction, PointsOfACylindricalGearTellItsShapeItsPitchAndItsRunOut) {
+  const TestDir dir;
+  const job::Job job = job::read_job_file(kSamples + "/cylindrical_spur.toml").value();
+  const auto gear = cylindrical::CylindricalGear::make(std::get<cylindrical::CylindricalParameters>(job.gear)).value();
+  const auto grid = inspection::inspection_grid(drawn_solid(gear)).value();
+  std::string text = "x y z i j k\n";
+  for (int tooth = 0; tooth < gear.parameters().teeth; ++tooth)
+    for (const auto& p : grid) {
+      const double turn = tooth * drawn_solid(gear).pitch(), across = (p.column - 4) / 4.0,
+                   off = 0.006 * across * across + 0.003 * std::sin(turn);
+      const Vec3 x = turned(Vec3(p.p + off * p.n), turn), n = turned(p.n, turn);
+      text += fmt::format("{:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n", x.x(), x.y(), x.z(), n.x(), n.y(), n.z());
+    }
+  write_file(dir / "points.txt", text);
+  app::Progress progress(true);
+  app::StageClock clock(progress);
+  const auto made = flow::make_gear(job, {{dir / "points.txt"}}, clock);
+  ASSERT_TRUE(made) << to_text(made.error());
+  const process::Correction& correction = made.value().correction.value();
+  ASSERT_EQ(correction.rows.size(), 2U);
+  for (const auto& row : correction.rows) {
+    EXPECT_EQ(row.teeth, 24);
+    EXPECT_LT(row.fit.residual_max_mm, 5e-5);
+  }
+  ASSERT_EQ(correction.index.pitch.size(), 2U);
+  for (const auto& pitch : correction.index.pitch) {
+    EXPECT_TRUE(pitch.complete);
+    EXPECT_NEAR(pitch.total_mm, 0.006 * std::hypot(1, std::tan(radians(20))), 3e-4);  // along the arc
+  }
+  ASSERT_EQ(correction.index.run_out.size(), 1U);
+  EXPECT_GT(correction.index.run_out.front().run_out_mm, 0.006 / std::sin(radians(35)));
 }
 
 }  // namespace
