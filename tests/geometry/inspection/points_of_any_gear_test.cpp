@@ -2,6 +2,9 @@
 // pitch and run-out.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+
 #include "geometry/base/angle.h"
 #include "geometry/cylindrical/part.h"
 #include "geometry/inspection/flank_points.h"
