@@ -72,8 +72,6 @@ class WallKernel {
   [[nodiscard]] Vec2 longest_step(Piece piece) const;
 
   [[nodiscard]] const BevelWall<double>& wall(int side) const { return walls<double>()[side > 0 ? 0 : 1]; }
-  /// u where a fillet joins its flank.
-  [[nodiscard]] double fillet_end(int side) const { return fillet_end_[side > 0 ? 0 : 1]; }
   /// beta at v, where the path is not straight.
   [[nodiscard]] double beta_at(double v) const { return beta_of(1 - v / begin_); }
   /// Smallest turn tan(beta_c) rho_A / (R_c tan(delta)) of the mill's path over the half, of either wall: where it is 0

@@ -59,11 +59,4 @@ struct FlankField {
   }
 };
 
-/// The displaced flank of side s of tooth 0.
-template <typename S>
-Vec3T<S> displaced_flank(const FaceGearSurface<S>& f, const FlankField& field, int s, const S& theta, const S& B) {
-  const auto at = f.flank(s, theta, B);
-  return at.p + at.n * field.offset(f, theta, at.p);
-}
-
 }  // namespace toothpath::face_gear

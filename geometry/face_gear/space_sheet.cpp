@@ -269,11 +269,6 @@ std::optional<double> SpaceSheet::B_at_radius(int side, double theta, double r, 
   return !B || field(side).none() ? B : v_at_radius(tooth_space::flank_of(side), theta, r, *B);
 }
 
-std::optional<double> SpaceSheet::Z_at_radius(int side, double A, double r, double start_Z) const {
-  const auto Z = fillet_Z_at_radius(ring_.surface, side, A, r, start_Z);
-  return !Z || field(side).none() ? Z : v_at_radius(tooth_space::fillet_of(side), A, r, *Z);
-}
-
 std::optional<PatchPoint> SpaceSheet::point(Piece piece, double u, double v) const {
   if (ring_.displaced()) {
     const auto q = piece == Piece::root ? plain(piece, u, v) : displaced(piece, u, v, false);

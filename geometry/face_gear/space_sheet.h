@@ -68,7 +68,6 @@ class SpaceSheet final : public tooth_space::ToothSpace {
   [[nodiscard]] std::optional<FlankCoordinates> invert(int side, double r, double z,
                                                        const std::optional<FlankCoordinates>& start = {}) const;
   [[nodiscard]] std::optional<double> B_at_radius(int side, double theta, double r, double start_B) const;
-  [[nodiscard]] std::optional<double> Z_at_radius(int side, double A, double r, double start_Z) const;
 
   /// What displaces a flank; none where it is plain.
   [[nodiscard]] FlankField field(int side) const;
