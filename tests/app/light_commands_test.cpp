@@ -29,7 +29,7 @@ commands::JobRequest request_for(const std::string& job, const std::string& out)
 TEST(LightCommands, SurfaceRunsGeometryOnly) {
   const TestDir dir;
   const auto before = analytic::SpatialIndex::built();
-  const commands::SurfaceRequest request{request_for(kSamples + "/spur_quick.toml", dir / "out"), {}};
+  const commands::SurfaceRequest request{request_for(kSamples + "/spur_quick.toml", dir / "out"), {}, {}};
   const auto outcome = commands::run_surface(request);
   ASSERT_EQ(outcome.exit_code, app::ExitCode::ok) << to_text(outcome.errors);
   EXPECT_EQ(stages_of(outcome), (std::set<std::string>{"job", "gear", "inspection grid", "mesh"}));

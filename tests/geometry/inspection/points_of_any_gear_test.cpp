@@ -36,7 +36,7 @@ inspection::PointFile measured(const tooth_space::ToothedSolid& gear, const std:
   return file;
 }
 
-void expect_found(const tooth_space::ToothedSolid& gear) {
+void expect_points_found(const tooth_space::ToothedSolid& gear) {
   const auto off = [](int tooth) { return 0.004 * std::sin(1.7 * tooth) - 0.002 * (tooth % 3); };
   for (const bool normals : {true, false})
     for (const double ball : {0.0, 0.5}) {
@@ -64,11 +64,11 @@ void expect_found(const tooth_space::ToothedSolid& gear) {
 
 TEST(PointsOfAnyGear, FindTheirTeethOnACylinder) {
   const auto gear = made(double_helical_pinion());
-  expect_found(drawn_solid(gear));
+  expect_points_found(drawn_solid(gear));
 }
 TEST(PointsOfAnyGear, FindTheirTeethOnASpiralBevelGear) {
   const auto gear = spiral_bevel::SpiralBevelGear::make(nasa_pinion()).value();
-  expect_found(drawn_solid(gear));
+  expect_points_found(drawn_solid(gear));
 }
 
 /// A gear that turns a little beside its centre: pitch and run-out have closed forms.
