@@ -134,13 +134,17 @@ class Orienter {
     const double margin = way.tight ? kTightMargin : share * o_.margin_mm;
     return check_.clear(point, axis, o_.clearance_mm + margin, way.tight ? kTightResolution : kGapResolution);
   }
+  /// Is a place of a pass, told by its length, asked with a station?
+  [[nodiscard]] static bool asked_with(const OrientationWay& way, std::size_t station, double at) {
+    const double before = 0.5 * way.step(station), after = 0.5 * way.step(std::min(station + 1, way.s.size() - 1));
+    const double off = at - way.s[station];
+    return -off <= before + 1e-9 && off <= after + 1e-9;
+  }
   /// At a station and at the places that are asked with it.
   [[nodiscard]] bool clear_about(const OrientationWay& way, std::size_t station, const Vec2& lean, bool turning) const {
-    const double before = 0.5 * way.step(station), after = 0.5 * way.step(std::min(station + 1, way.s.size() - 1));
     return clear_at(way, way.points[station], lean, turning) &&
            std::all_of(way.also.begin(), way.also.end(), [&](const auto& place) {
-             const double off = place.first - way.s[station];
-             return -off > before + 1e-9 || off > after + 1e-9 || clear_at(way, place.second, lean, turning);
+             return !asked_with(way, station, place.first) || clear_at(way, place.second, lean, turning);
            });
   }
   /// Of a square of leans at a place. Two leans are no farther apart as axes than as tangents.
@@ -152,9 +156,15 @@ class Orienter {
   }
   /// At a station of a way that turns: with the places that are asked with it, and the pole.
   [[nodiscard]] Leans leans_at(const OrientationWay& way, std::size_t station, const Vec2& centre, double half) const {
-    const Leans here = leans_about(way, way.points[station], centre, half);
+    Leans all = leans_about(way, way.points[station], centre, half);
+    for (const auto& place : way.also) {
+      if (all == Leans::none_clear) return all;
+      if (!asked_with(way, station, place.first)) continue;
+      const Leans there = leans_about(way, place.second, centre, half);
+      if (there != Leans::all_clear) all = there;
+    }
     const double off = off_pole(check_.frame().axis(centre.x(), centre.y())) - half * std::numbers::sqrt2;
-    return here == Leans::all_clear && (!way.also.empty() || off < o_.least_tilt_rad) ? Leans::mixed : here;
+    return all == Leans::all_clear && off < o_.least_tilt_rad ? Leans::mixed : all;
   }
   /// Half-way between two stations, and the whole turn away from the pole.
   [[nodiscard]] bool clear_between(const OrientationWay& way, std::size_t station, std::size_t next, const Vec2& a,
