@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "geometry/base/angle.h"
+#include "postproc/bodies/of_machine.h"
 #include "postproc/choice/travel_offer.h"
 
 namespace toothpath::proposal {
@@ -11,6 +13,8 @@ namespace {
 
 constexpr double kFixture = 20;  // mm between the plate of the table and the blank
 constexpr double kApproach = 8;  // mm above the blank
+constexpr double kBodiesApart = 5, kRise = 10,
+                 kHighestRise = 400;  // mm between bodies of the machine, and how they get it
 constexpr double kLeansAside[] = {-25, 0, 25}, kLeansOut[] = {0, 25};  // deg
 constexpr int kMostTeeth = 24;                                         // turned copies that are looked at
 
@@ -48,6 +52,25 @@ void for_each_pose(const machines::Machine& machine, const PartInSpace& part, co
       if (found != solutions->end()) note(found->joints);
     }
   }
+}
+
+/// How much higher the gear must stand so that the bodies of the machine keep apart at every place of the tool: with a
+/// tool that comes in from the side the spindle would stand in the table. 0 where no height does: the trial says why.
+double rise_off_bodies(const machines::Machine& machine, const PartInSpace& part, const Vec3& origin,
+                       double tool_length_mm) {
+  auto found = bodies::bodies_of(machine, false);
+  if (!found) return 0;
+  const bodies::Scene scene(machine.chain, std::move(*found));
+  for (double rise = 0; rise <= kHighestRise; rise += kRise) {
+    bool apart = true;
+    for_each_pose(machine, part, origin + Vec3(0, 0, rise), tool_length_mm, [&](const machines::Joints& joints) {
+      apart = apart && std::all_of(scene.pairs().begin(), scene.pairs().end(), [&](const bodies::Pair& pair) {
+                return scene.gap_of(pair, joints, kBodiesApart).proven >= kBodiesApart;
+              });
+    });
+    if (apart) return rise;
+  }
+  return 0;
 }
 
 void measure_travels(const machines::Machine& machine, const PartInSpace& part, double tool_length_mm, Place& place) {
@@ -107,7 +130,8 @@ std::optional<Place> place_of(const machines::Machine& machine, const PartInSpac
   const double below = part.up ? -part.z_min_mm : part.z_max_mm;  // of the origin, to the underside
   auto top = machine.top_under(Vec3(plate.x(), plate.y(), INFINITY));
   if (machine.table_face_mm) top = std::max(top.value_or(*machine.table_face_mm), *machine.table_face_mm);
-  const double lowest = top.value_or(plate.z()) + kFixture + below;
+  const double on_table = top.value_or(plate.z()) + kFixture + below,
+               lowest = on_table + rise_off_bodies(machine, part, {plate.x(), plate.y(), on_table}, tool_length_mm);
   Vec3 origin(plate.x(), plate.y(), std::round(lowest));
 
   choice::TravelPoses poses(chain, machine.limit_margin,
