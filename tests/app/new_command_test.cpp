@@ -89,7 +89,8 @@ INSTANTIATE_TEST_SUITE_P(
         gear("offset", "shaped", "y514", {"--teeth", "88", "--module", "3"}),
         gear("double_helical", "ball", "heidenhain_ac", {"--teeth", "60", "--module", "1.5"}),
         gear("double_helical", "line", "xyzac_large", {"--teeth", "60", "--module", "1.5"}),
-        gear("cylindrical", "ball", "xyzac_large", {"--teeth", "12", "--module", "2.5"}),  // undercut without a shift
+        // Undercut without a shift; the spindle comes in beside the table.
+        gear("cylindrical", "ball", "siemens_ac", {"--teeth", "12", "--module", "2.5"}),
         gear("cylindrical_double_helical", "ball", "head_table_bc",
              {"--teeth", "30", "--module", "1", "--helix", "20", "--face-width", "5"}),
         gear("cylindrical_double_helical", "line", "xyzac_large",
