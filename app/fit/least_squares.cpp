@@ -18,7 +18,7 @@ std::vector<fs::path> library_places() {
   std::vector<fs::path> places;
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) places.push_back(program.parent_path().parent_path() / "lib" / "toothpath" / kLibrary);
+  if (!error) places.push_back(program.parent_path().parent_path() / "lib" / "toothpath" / "modules" / kLibrary);
 #ifdef TOOTHPATH_LIBRARY_IN_TREE
   places.emplace_back(fs::path(TOOTHPATH_LIBRARY_IN_TREE) / kLibrary);
 #endif

@@ -36,7 +36,7 @@ TEST(CommandLine, UsageErrorsAreTwo) {
 // What was typed is told as it was typed, with what was meant.
 TEST(CommandLine, UsageErrorsNameTheWord) {
   const std::pair<std::vector<std::string>, std::string> cases[] = {
-      {{"rnu", kQuick}, "unknown command \"rnu\"; did you mean \"run\"?; commands are: new, run, check, "},
+      {{"rnu", kQuick}, "unknown command \"rnu\"; did you mean \"run\"?; commands are: new, fit, run, check, "},
       {{"study", "stabilty"}, "unknown command \"stabilty\"; did you mean \"stability\"?; study commands are: "},
       {{"study"}, "a command is missing; study commands are: "},
       {{"run", kQuick, "--ot", "x"}, "unknown option --ot; did you mean \"--out\"?"},

@@ -20,7 +20,7 @@ kinds=(usr/bin/toothpath usr/share/man/man1/toothpath.1.gz usr/share/bash-comple
   usr/share/zsh/vendor-completions/_toothpath usr/share/fish/vendor_completions.d/toothpath.fish
   usr/share/doc/toothpath/README.md usr/share/doc/toothpath/copyright usr/share/doc/toothpath/changelog.gz
   'usr/share/doc/toothpath/docs/.*' 'usr/share/doc/toothpath/samples/.*\.(toml|md|slurm|sh)' 'usr/share/toothpath/machines/[a-z0-9_]*\.toml'
-  'usr/share/toothpath/schema/[a-z]*\.schema\.json' usr/lib/toothpath/toothpath_least_squares.so)
+  'usr/share/toothpath/schema/[a-z]*\.schema\.json' usr/lib/toothpath/modules/toothpath_least_squares.so)
 files=$(dpkg-deb --fsys-tarfile "$program" | tar t | sed 's|^\./||' | grep -v '/$')
 for kind in "${kinds[@]}"; do grep -qxE "$kind" <<<"$files" || fail "no $kind in the package"; done
 others=$(grep -vxE "$(IFS='|'; echo "${kinds[*]}")" <<<"$files" || true)
