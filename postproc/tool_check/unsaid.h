@@ -1,4 +1,4 @@
-// What the lines of a check may have changed is not known behind them.
+// What the last program, or the lines of a check, may have left is not known until the text says it.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,7 +13,10 @@ namespace toothpath::tool_check {
 /// Modes that a text must say again ahead of a move; by a number of the reader's own and the words that say them.
 class Unsaid {
  public:
-  void all(std::map<unsigned, const char*> modes) { modes_ = std::move(modes); }
+  /// Modes behind a check of the tool.
+  void all(std::map<unsigned, const char*> modes) { modes_ = std::move(modes), begun_ = true; }
+  /// Modes at the begin of a program.
+  void at_begin(std::map<unsigned, const char*> modes) { modes_ = std::move(modes); }
   void said(unsigned mode) { modes_.erase(mode); }
   /// The modal groups of a block, a bit each.
   void said_groups(std::uint32_t groups) {
@@ -22,6 +25,8 @@ class Unsaid {
   [[nodiscard]] bool none() const { return modes_.empty(); }
   /// What is wrong with a move while one is left. @param move  "an axis word"
   [[nodiscard]] std::string text(const char* move) const {
+    if (!begun_)
+      return fmt::format("{} ahead of {}: what it does would depend on the last program", move, modes_.begin()->second);
     return fmt::format(
         "{} behind a check of the tool, which may have changed every mode: {} must be said again ahead "
         "of it",
@@ -30,6 +35,7 @@ class Unsaid {
 
  private:
   std::map<unsigned, const char*> modes_;
+  bool begun_ = false;  // a check of the tool was run
 };
 
 }  // namespace toothpath::tool_check

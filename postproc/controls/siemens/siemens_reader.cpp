@@ -33,7 +33,9 @@ class Siemens {
         control_(control),
         lines_(readback::lines_of(text)),
         execution_(control, {.tcp_may_take_zero = true, .reference_keeps_length = true}, sink),
-        path_(control.letters) {}
+        path_(control.letters) {
+    unsaid_.at_begin({{kTransformation, "TRAFOOF"}});
+  }
 
   Status run() {
     if (auto bad = readback::no_acting_comment(text_, file_, siemens_acting_comment); !bad) return bad;
@@ -710,10 +712,11 @@ class Siemens {
                       frame_said_ ? "ORIAXES" : "ORIWKS"));
     if (motion_ < 0) return here(r.column, "axis word before G0 or G1");
     if (r.supa && motion_ != 0) return here(r.column, "SUPA with G1");
-    if (motion_ == 1 && !corners_said_)
-      return here(r.column,
-                  "G1 behind CYCLE832() without G60, G641 or another CYCLE832: how far the control leaves corners is "
-                  "not said");
+    if (motion_ == 1 && !corners_said_ && !execution_.in_site_smoothing())
+      return here(
+          r.column,
+          "G1 without G60, G641 or CYCLE832 since the program began, a tool was checked or CYCLE832() was left: "
+          "how far the control leaves corners is not said");
     r.move.rapid = motion_ == 0;
     r.move.machine_frame = r.supa;
     r.move.own_feed = r.f.has_value();
@@ -736,7 +739,7 @@ class Siemens {
   tool_check::Unsaid unsaid_;
   bool ended_ = false;
   bool zero_said_ = true;                        // since TRAORI or TRAFOOF, where it was moved
-  bool corners_said_ = true;                     // since CYCLE832() was left
+  bool corners_said_ = false;                    // since the program began, a tool was checked, CYCLE832() was left
   bool frame_said_ = false, axes_said_ = false;  // ORIWKS, ORIAXES, since TRAORI
 };
 

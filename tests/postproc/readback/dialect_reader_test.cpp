@@ -28,8 +28,14 @@ std::string refusal(const std::string& dialect, const std::string& text) {
 
 TEST(SiemensReader, RefusalsNameLineAndColumn) {
   const std::string start =
-      "G17 G40 G90 G94 G710\nTRAFOOF\nG54\n;OP 0 finishing\nSUPA G0 Z500 D0\nT=\"T1\"\nM6\nS100 M3\nD1\n";
+      "G17 G40 G60 G90 G94 G710\nTRAFOOF\nG54\n;OP 0 finishing\nSUPA G0 Z500 D0\nT=\"T1\"\nM6\nS100 M3\nD1\n";
   const auto error = [&](const std::string& body) { return refusal("siemens", start + body); };
+  // What the last program may have left: a transformation in which the retract would move, and corners.
+  const auto without = [&](const std::string& words) {
+    return refusal("siemens", std::string(start).erase(start.find(words), words.size()) + "G0 X1 Y1 A0 C0\nG1 X2 F9\n");
+  };
+  EXPECT_TRUE(without("TRAFOOF\n").starts_with("p:4:9: error: an axis word ahead of TRAFOOF: what it does would"));
+  EXPECT_TRUE(without("G60 ").starts_with("p:11:4: error: G1 without G60, G641 or CYCLE832 since the program began"));
   EXPECT_EQ(error("G0 A=10 C=R1\nM5\nM30\n"), "p:10:11: error: a parameter that was never set, or no parameter");
   EXPECT_EQ(error("R1=3\nG0 A=10 C=-R1*(2+1)/4\nG0 X1\nM5\nM30\n"), "none");
   const std::pair<const char*, const char*> cases[] = {

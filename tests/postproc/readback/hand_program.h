@@ -23,7 +23,7 @@ inline machines::Machine machine_with(const std::string& dialect) {
 /// Ahead of the words that are tried: units, offset, tool 1 with its length, the spindle, a cut at X5 Y5 Z40.
 inline std::string opening(const std::string& dialect) {
   if (dialect == "siemens")
-    return "G17 G40 G90 G94 G710\nTRAFOOF\nG54\n;OP 0 finishing\nSUPA G0 Z500 D0\nT=\"T1\"\nM6\nS1200 M3\nD1\nM8\n"
+    return "G17 G40 G60 G90 G94 G710\nTRAFOOF\nG54\n;OP 0 finishing\nSUPA G0 Z500 D0\nT=\"T1\"\nM6\nS1200 M3\nD1\nM8\n"
            "SUPA G0 X0 Y0\nG0 A=0 C=0\nG0 X5 Y5\nG0 Z50\nG1 Z40 F100\n";
   if (dialect == "heidenhain")
     return "BEGIN PGM P MM\n; OP 0 finishing\nCYCL DEF 247 DATUM SETTING Q339=+1\nL Z+500 R0 FMAX M91\nTOOL CALL 1 Z "
