@@ -233,7 +233,8 @@ void add_check(Commands& commands) {
             "--fixture", request.fixture_files,
             "closed mesh of what holds the work and turns with it (STL or OBJ, mm, gear frame); repeatable. Facets are "
             "taken as exact: what they leave out of the true part must lie within the clearance of the job");
-        set.files("--measured", request.measured.files, "what was measured, where the program is compensated for it (see correct)");
+        set.files("--measured", request.measured.files,
+                  "what was measured, where the program is compensated for it (see correct)");
         set.number("--ball-diameter", request.measured.ball_diameter_mm,
                    "the measured points are centres of a ball of this diameter (see correct)", job::kBallDiameter);
       },

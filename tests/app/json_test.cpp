@@ -207,8 +207,8 @@ TEST(JsonOfCorrect, SaysWhatWasMeasuredAndWhatIsLeft) {
 /// Every command of the help is one of those above, or one whose own test reads its JSON.
 TEST(JsonOfCommands, AreAllAsked) {
   const std::string help = run_program(Words{"--help"}).out;
-  for (const char* command : {"new", "fit", "run", "check", "correct", "surface", "shaper", "cutter", "forces", "contact",
-                              "compare", "probe", "study", "machine", "reference"})
+  for (const char* command : {"new", "fit", "run", "check", "correct", "surface", "shaper", "cutter", "forces",
+                              "contact", "compare", "probe", "study", "machine", "reference"})
     EXPECT_NE(help.find(std::string("\n  ") + command + " "), std::string::npos) << command;
   const auto at = help.find("Subcommands:");
   ASSERT_NE(at, std::string::npos);
