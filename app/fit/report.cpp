@@ -221,7 +221,7 @@ page::StudyPage fit_page(const Told& told) {
       {"start", svg::short_number(app::um(f.before.rms_mm)), svg::short_number(app::um(f.before.worst_mm)), ""});
   sizes.rows.push_back({"fitted", svg::short_number(app::um(f.after.rms_mm)),
                         svg::short_number(app::um(f.after.worst_mm)), where(told, f.placing.points[f.after.worst])});
-  for (const std::string& note : told_of_points(told)) page.introduction.push_back(svg::sentence(note) + ".");
+  for (const std::string& note : told_of_points(told)) page.introduction.push_back(note + ".");
   page.tables = {std::move(sizes), std::move(numbers)};
   for (std::size_t zone = 0; zone < f.spaces.size(); ++zone)
     for (const int side : {1, -1}) page.figures.push_back(map_of(told, int(zone), side));
