@@ -302,7 +302,7 @@ TEST(PathFaultsInText, AShortTextExecutesFewBlocks) {
 
 TEST(PathFaultsInText, LoopsThatMoveForEverEndInOtherDialectsToo) {
   const std::pair<const char*, std::string> cases[] = {
-      {"siemens", "G17 G710 G90 G94\nFOR R1=0 TO 999999999\nSUPA G0 X=R1/10000000\nENDFOR\nM30\n"},
+      {"siemens", "G17 G710 G90 G94\nTRAFOOF\nFOR R1=0 TO 999999999\nSUPA G0 X=R1/10000000\nENDFOR\nM30\n"},
       {"heidenhain",
        "0 BEGIN PGM P MM\n1 Q1 = 0\n2 LBL 1\n3 Q1 = Q1 + 1\n4 L X+Q1 R0 FMAX M91\n5 FN 12: IF +Q1 LT +999999999 "
        "GOTO LBL 1\n6 M30\n7 END PGM P MM\n"},
