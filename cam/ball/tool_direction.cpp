@@ -27,10 +27,13 @@ std::optional<tool::Frustum> flute_body(const tool::ToolAssembly& tool) {
   return tool::Frustum{R + skin, top, R - skin, R - skin + wider, tool::Body::flute};
 }
 
-std::vector<Vec3> some_centres(const std::vector<BallPass>& passes, std::size_t count) {
+std::vector<Vec3> all_centres(const std::vector<BallPass>& passes) {
   std::vector<Vec3> all;
   for (const auto& p : passes)
     for (const auto& q : p.points) all.push_back(q.centre);
+  return all;
+}
+std::vector<Vec3> some_of(const std::vector<Vec3>& all, std::size_t count) {
   std::vector<Vec3> out;
   const std::size_t step = std::max<std::size_t>(1, all.size() / count);
   for (std::size_t k = 0; k < all.size(); k += step) out.push_back(all[k]);
@@ -47,8 +50,9 @@ class Search {
         sheet_(sheet),
         tool_(tool),
         o_(options),
-        few_(some_centres(passes, 24)),
-        many_(some_centres(passes, 400)),
+        all_(all_centres(passes)),
+        few_(some_of(all_, 24)),
+        many_(some_of(all_, 400)),
         frame_(pitch_frame(part, zone)),
         beside_ring_(part.zones() > 1),
         upright_first_(beside_ring_ && part.part().chart().sine == 0) {
@@ -112,11 +116,15 @@ class Search {
     return least;
   }
 
-  /// Least gap of shank and holder over the centres; of a body that cuts in: minus its `depth`.
+  /// Least gap of shank and holder over the centres, up to some; of a body that cuts in: minus its `depth`.
   [[nodiscard]] double gap(const Vec3& axis, const std::vector<Vec3>& centres, tool::Body& worst) const {
+    return gap_below(kEnough, axis, centres, worst);
+  }
+  [[nodiscard]] double gap_below(double enough, const Vec3& axis, const std::vector<Vec3>& centres,
+                                 tool::Body& worst) const {
     std::vector<Vec3> tips;
     for (const Vec3& c : centres) tips.push_back(c - tool_.radius_mm() * axis);
-    double least = kEnough;
+    double least = enough;
     for (const auto& body : tool::shank_and_holder(tool_)) {
       double here = least_gap(body, tips, axis, least);
       if (here < 0) here = -tree_.depth(body, tips, axis, kDirectionDeepest, kDirectionResolution);
@@ -140,10 +148,10 @@ class Search {
     return least;
   }
 
-  [[nodiscard]] bool flute_cuts(const Vec3& axis) const {
+  [[nodiscard]] bool flute_cuts(const Vec3& axis, const std::vector<Vec3>& centres) const {
     std::atomic<bool> cuts{false};
-    tbb::parallel_for(std::size_t(0), many_.size(), [&](std::size_t k) {
-      if (!cuts && !tree_.keeps(*flute_, many_[k] - tool_.radius_mm() * axis, axis, 0, 1e-3)) cuts = true;
+    tbb::parallel_for(std::size_t(0), centres.size(), [&](std::size_t k) {
+      if (!cuts && !tree_.keeps(*flute_, centres[k] - tool_.radius_mm() * axis, axis, 0, 1e-3)) cuts = true;
     });
     return cuts;
   }
@@ -203,7 +211,12 @@ class Search {
     if (m.least_draft >= o_.least_draft) {
       const Vec3 axis = axis_at(c.lean_rad, c.azimuth_rad);
       if (c.gap_mm >= o_.clearance_mm && !choice_.fixed) c.gap_mm = gap(axis, many_, c.worst_body);
-      if (c.gap_mm >= o_.clearance_mm && flute_ && flute_cuts(axis)) {
+      // Some centres lead quickly to a direction; all of them must keep clear in the one that is taken.
+      if (c.gap_mm >= o_.clearance_mm && !choice_.fixed)
+        if (const double least = gap_below(o_.clearance_mm, axis, all_, c.worst_body); least < o_.clearance_mm)
+          c.gap_mm = least;
+      if (c.gap_mm >= o_.clearance_mm && flute_ &&
+          (flute_cuts(axis, many_) || (!choice_.fixed && flute_cuts(axis, all_)))) {
         c.gap_mm = 0;
         c.worst_body = flute_->body;
       }
@@ -263,7 +276,7 @@ class Search {
   const tooth_space::OffsetSheet& sheet_;
   const tool::ToolAssembly& tool_;
   const DirectionOptions& o_;
-  std::vector<Vec3> few_, many_;
+  std::vector<Vec3> all_, few_, many_;
   PitchFrame frame_;
   bool beside_ring_;                    ///< a double helical gear: another ring of teeth stands across the groove,
   bool upright_first_;                  ///< which an axis along that of the gear does not meet

@@ -62,6 +62,30 @@ TEST(Direction, TheFluteStaysOutOfTheOtherRing) {
   EXPECT_TRUE(check.passes(check.check(job.motions(), job.tool_of_operation())));
 }
 
+// A thousand places above the teeth and one in the root, where the holder meets them in every direction: that one
+// counts, wherever it stands among the others.
+TEST(Direction, OnePlaceInTheWayCounts) {
+  const face_gear::FaceGear gear = test::made(test::small_spur());
+  const auto& zone = gear.rings().front().zone;
+  const double R = 0.4, middle = 0.5 * (zone.inner_radius_mm + zone.outer_radius_mm);
+  auto tool = test::ball_mill(2 * R, 1.2, 2 * R, 1.5, 60);
+  const analytic::GearDistance part(face_gear::part_of(gear), 10);
+  const analytic::BodyTree tree(part);
+  const tooth_space::OffsetSheet sheet(part.space(0), R, zone.inner_radius_mm, zone.outer_radius_mm, 17);
+  const double azimuth = 0.5 * kTwoPi / gear.parameters().teeth;  // space 0 lies between teeth 0 and 1
+  const auto at = [&](double z) { return Vec3(middle * std::cos(azimuth), middle * std::sin(azimuth), z); };
+  std::vector<ball::BallPass> passes(1);
+  for (int k = 0; k < 1001; ++k) passes[0].points.push_back({at(gear.blank_top() + 20), Vec3::Zero(), false});
+  const auto choose = [&] { return ball::choose_direction(part, tree, 0, sheet, passes, tool, {}); };
+  ASSERT_TRUE(choose().fixed);
+  for (const std::size_t among : {0U, 1U, 500U, 501U, 999U, 1000U}) {
+    const auto kept = passes;
+    passes[0].points[among].centre = at(gear.lowest_root() + R + 0.1);
+    EXPECT_FALSE(choose().fixed) << among;
+    passes = kept;
+  }
+}
+
 TEST(Body, GapAgainstSampledSurfaces) {
   for (const auto& name : test::gear_names()) {
     const face_gear::FaceGear gear = test::made(test::gear_named(name));
