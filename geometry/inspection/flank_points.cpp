@@ -96,7 +96,6 @@ class Placing {
                foot->u,
                foot->v,
                foot->at.p,
-               radius(foot->at.p),
                foot->distance - ball_};
     c.n = turned(foot->at.n, spaces * pitch);
     note_ends(sheet, *foot, c);

@@ -20,7 +20,6 @@ struct FlankPoint {
   int tooth = 0;             ///< 0 .. teeth - 1; space k lies between flank +1 of tooth k and flank -1 of tooth k + 1
   double theta = 0, B = 0;   ///< of the foot: its (u, v)
   Vec3 foot = Vec3::Zero();  ///< in space 0
-  double radius_mm = 0;      ///< of the foot
   double deviation_mm = 0;   ///< distance from the exact flank, positive: material left
 };
 

@@ -35,13 +35,11 @@ struct Middle {
   }
 };
 
-Result<Middle> middle_of(const tooth_space::ToothedSolid& gear, const tooth_space::ToothedSolid::Ring& ring) {
-  const auto grid = inspection_grid(gear);
-  if (!grid) return grid.error();
+Middle middle_of(const std::vector<InspectionPoint>& grid, const tooth_space::ToothedSolid::Ring& ring) {
   const InspectionOptions options;
   Middle out;
   out.space = ring.space;
-  for (const auto& p : *grid)
+  for (const auto& p : grid)
     if (p.zone == ring.zone && p.row == options.rows / 2 && p.column == options.columns / 2)
       if (const auto q = ring.space->point(tooth_space::flank_of(p.side), p.theta, p.B))
         (p.side > 0 ? out.plus : out.minus) = *q;
@@ -94,15 +92,16 @@ Result<IndexOfTeeth> index_of_teeth(const tooth_space::ToothedSolid& gear, const
   const int teeth = gear.teeth;
   std::vector<tooth_space::ToothedSolid::Ring> rings = gear.rings;
   std::sort(rings.begin(), rings.end(), [](const auto& a, const auto& b) { return a.zone < b.zone; });
+  const auto grid = inspection_grid(gear);
+  if (!grid) return grid.error();
   for (const auto& ring : rings) {
-    const auto middle = middle_of(gear, ring);
-    if (!middle) return middle.error();
+    const Middle middle = middle_of(*grid, ring);
     const int zone = ring.zone;
     const ByTooth plus = by_tooth(places, zone, 1, teeth), minus = by_tooth(places, zone, -1, teeth);
     for (const int side : {1, -1})
-      if (auto pitch = pitch_of(*middle, zone, side, side > 0 ? plus : minus)) out.pitch.push_back(*pitch);
-    const Vec2 rise = rise_of_ball(*middle);
-    RunOut run_out{zone, middle->radius_mm(), 0, 0, false};
+      if (auto pitch = pitch_of(middle, zone, side, side > 0 ? plus : minus)) out.pitch.push_back(*pitch);
+    const Vec2 rise = rise_of_ball(middle);
+    RunOut run_out{zone, middle.radius_mm(), 0, 0, false};
     double low = INFINITY, high = -INFINITY;
     for (std::size_t k = 0; k < plus.size(); ++k) {
       const auto& other = minus[(k + 1) % plus.size()];

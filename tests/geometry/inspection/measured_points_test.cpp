@@ -131,7 +131,7 @@ Result<modification::ScatteredFit> fit_of(const face_gear::FaceGear& gear,
     if (p.zone == zone && p.side == side) nominal.push_back({p.row, p.column, p.theta, radius(p.p), 0});
   std::vector<modification::ScatteredDeviation> points;
   for (const auto& p : placed)
-    if (p.zone == zone && p.side == side) points.push_back({p.tooth, p.theta, p.radius_mm, p.deviation_mm});
+    if (p.zone == zone && p.side == side) points.push_back({p.tooth, p.theta, radius(p.foot), p.deviation_mm});
   return modification::FlankCorrection::fit_scattered(points, nominal,
                                                       gear.rings()[std::size_t(zone)].surface.shaper.theta_t);
 }
