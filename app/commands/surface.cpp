@@ -81,9 +81,9 @@ CommandOutcome run_surface(const SurfaceRequest& request) {
   report.cad = std::move(cad->solid);
   report.warnings.insert(report.warnings.end(), cad->warnings.begin(), cad->warnings.end());
   if (rexs) {
-    const auto grid = output->read_back("inspection.csv");
-    if (!grid) return failed(grid.error());
-    rexs::add_flank_grid(rexs->file, *grid);
+    const auto flanks = gear.inspected();
+    if (!flanks) return failed(flanks.error());
+    rexs::add_flank_grid(rexs->file, flanks->points);
     if (const Status s = app::write_new_file(request.rexs_file, rexs::rexs_text(rexs->file)); !s)
       return failed(s.error());
     for (std::string& note : rexs->notes) report.warnings.push_back(request.rexs_file + ": " + note);

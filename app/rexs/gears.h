@@ -10,6 +10,7 @@
 #include "app/rexs/rexs_file.h"
 #include "geometry/base/refusal.h"
 #include "geometry/cylindrical/parameters.h"
+#include "geometry/inspection/grid.h"
 #include "geometry/spiral_bevel/parameters.h"
 
 namespace toothpath::rexs {
@@ -53,7 +54,7 @@ struct Written {
                                                  const std::string& name);
 /// Puts the points and normals of inspection.csv to the flanks, under names of our own ("custom_.."): the schema has
 /// none for them.
-void add_flank_grid(RexsFile& file, std::string_view inspection_csv);
+void add_flank_grid(RexsFile& file, const std::vector<inspection::InspectionPoint>& points);
 
 // Parts of it, a file each.
 [[nodiscard]] cylindrical::CylindricalParameters cylindrical_of(const RexsFile& file, const Component& gear,

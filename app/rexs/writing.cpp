@@ -5,7 +5,7 @@
 
 #include "app/rexs/gears.h"
 #include "geometry/base/angle.h"
-#include "geometry/inspection/table_text.h"
+#include "geometry/cylindrical/involute_kernel.h"
 #include "geometry/spiral_bevel/set_up.h"
 
 namespace toothpath::rexs {
@@ -76,17 +76,14 @@ Expected<Written, Refusal> rexs_of(const CylindricalParameters& p, const std::st
   const bool normal = p.module_plane == ModulePlane::normal;
   const double m_n = normal ? p.module_mm : p.module_mm * std::cos(beta), as_given = p.module_mm / m_n,
                alpha_n = normal ? p.pressure_angle_rad : std::atan(std::tan(p.pressure_angle_rad) * std::cos(beta)),
-               d = m_n * p.teeth / std::cos(beta), x = p.profile_shift * as_given,
-               less = -p.thickness_allowance_mm / (2 * m_n * std::tan(alpha_n));
+               x = p.profile_shift * as_given, less = -p.thickness_allowance_mm / (2 * m_n * std::tan(alpha_n));
+  const cylindrical::InvoluteKernel<double> radii(p, zone);
   Written out;
   Making making;
   std::vector<Attribute> body = {
-      plain("number_of_teeth", p.teeth),
-      mm("normal_module", m_n),
-      deg("helix_angle_reference_diameter", beta),
-      mm("face_width", zone.to_mm - zone.from_mm),
-      mm("tip_diameter", p.tip_diameter_mm.value_or(d + 2 * p.module_mm * (p.profile_shift + p.addendum_coefficient))),
-      mm("root_diameter", d + 2 * p.module_mm * (p.profile_shift - p.dedendum_coefficient))};
+      plain("number_of_teeth", p.teeth),           mm("normal_module", m_n),
+      deg("helix_angle_reference_diameter", beta), mm("face_width", zone.to_mm - zone.from_mm),
+      mm("tip_diameter", 2 * radii.r_a),           mm("root_diameter", 2 * radii.r_f)};
   if (p.bore_diameter_mm > 0) body.push_back(mm("inner_diameter", p.bore_diameter_mm));
   const int gear = making.add("cylindrical_gear", name, std::move(body));
   std::array<int, 2> flanks{};
@@ -165,25 +162,20 @@ Expected<Written, Refusal> rexs_of(const SpiralBevelParameters& p, const std::st
   return out;
 }
 
-void add_flank_grid(RexsFile& file, std::string_view inspection_csv) {
-  // zone, flank, row, column, x, y, z, i, j, k
-  constexpr std::array<const char*, 8> kNames = {"custom_grid_row", "custom_grid_column", "custom_grid_x",
-                                                 "custom_grid_y",   "custom_grid_z",      "custom_grid_i",
-                                                 "custom_grid_j",   "custom_grid_k"};
+void add_flank_grid(RexsFile& file, const std::vector<inspection::InspectionPoint>& points) {
   for (Component& component : file.components) {
     const Attribute* side = component.find("custom_flank_side");
     if (!side) continue;
-    const std::string wanted = side->text;
-    std::vector<Attribute> grid;
-    for (std::size_t k = 0; k < kNames.size(); ++k)
-      grid.push_back(attribute(kNames[k], k >= 2 && k < 5 ? "mm" : "none", ""));
-    int number = 0;
-    for (std::string_view rest = inspection_csv; !rest.empty();) {
-      const auto line = inspection::take_line(rest, number);
-      number = line.number;
-      const auto cells = inspection::number_cells(line.text);
-      if (cells.size() < 2 + kNames.size() || cells[1].text != wanted) continue;
-      for (std::size_t k = 0; k < kNames.size(); ++k) grid[k].cells.push_back(cells[2 + k].text);
+    std::array<Attribute, 8> grid = {
+        attribute("custom_grid_row", "none", ""), attribute("custom_grid_column", "none", ""),
+        attribute("custom_grid_x", "mm", ""),     attribute("custom_grid_y", "mm", ""),
+        attribute("custom_grid_z", "mm", ""),     attribute("custom_grid_i", "none", ""),
+        attribute("custom_grid_j", "none", ""),   attribute("custom_grid_k", "none", "")};
+    for (const inspection::InspectionPoint& at : points) {
+      if (digits(at.side) != side->text) continue;
+      const std::array<double, 8> numbers = {double(at.row), double(at.column), at.p.x(), at.p.y(),
+                                             at.p.z(),       at.n.x(),          at.n.y(), at.n.z()};
+      for (std::size_t k = 0; k < grid.size(); ++k) grid[k].cells.push_back(digits(numbers[k]));
     }
     component.attributes.insert(component.attributes.end(), grid.begin(), grid.end());
   }

@@ -207,7 +207,7 @@ Gear there_and_back(const Gear& gear, const rexs::Said& said = {}) {
   if (!written) ADD_FAILURE() << written.error().diagnostic.message;
   if (!written) return {};
   rexs::add_flank_grid(written->file,
-                       "zone,flank,row,column,x,y,z,i,j,k\n0,1,0,0,1.5,2,3,1,0,0\n0,-1,0,0,1.5,-2,3,1,0,0\n");
+                       {{0, 1, 0, 0, 0, 0, {1.5, 2, 3}, {1, 0, 0}}, {0, -1, 0, 0, 0, 0, {1.5, -2, 3}, {1, 0, 0}}});
   const std::string text = rexs::rexs_text(written->file);
   const auto file = rexs::parse_rexs(text, "g.rexs");
   if (!file) ADD_FAILURE() << file.error().text() << text;
@@ -221,7 +221,7 @@ Gear there_and_back(const Gear& gear, const rexs::Said& said = {}) {
   return read ? std::get<Gear>(read->gear) : Gear{};
 }
 
-constexpr double kDigits = 1e-13;
+void near(double a, double b) { EXPECT_NEAR(a, b, 1e-13 * std::max(1.0, std::abs(b))); }
 
 TEST(Rexs, ASpiralBevelGearIsReadBackAsItWasWritten) {
   const std::string text = text_of("bevel_pair.rexs");
@@ -237,7 +237,6 @@ TEST(Rexs, ASpiralBevelGearIsReadBackAsItWasWritten) {
     EXPECT_EQ(q.teeth, p.teeth);
     EXPECT_EQ(q.hand, p.hand);
     EXPECT_EQ(q.mean_space_width_mm.has_value(), p.mean_space_width_mm.has_value());
-    const auto near = [](double a, double b) { EXPECT_NEAR(a, b, kDigits * std::max(1.0, std::abs(b))); };
     near(q.shaft_angle_rad, p.shaft_angle_rad);
     near(q.pitch_angle_rad, p.pitch_angle_rad);
     near(q.outer_cone_distance_mm, p.outer_cone_distance_mm);
@@ -287,7 +286,6 @@ TEST(Rexs, ACylindricalGearIsReadBackAsItWasWritten) {
     const auto q = there_and_back(p);
     // The rack of a transverse reading, in its normal plane.
     const double k = plane == ModulePlane::normal ? 1 : std::cos(radians(18));
-    const auto near = [](double a, double b) { EXPECT_NEAR(a, b, kDigits * std::max(1.0, std::abs(b))); };
     EXPECT_EQ(q.teeth, p.teeth);
     near(q.module_mm, p.module_mm * k);
     near(std::tan(q.pressure_angle_rad), std::tan(p.pressure_angle_rad) * k);
