@@ -1,7 +1,11 @@
 #include "app/base/option_number.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+
+#include "geometry/base/length_unit.h"
+#include "geometry/base/printable.h"
 
 namespace toothpath::app {
 namespace {
@@ -39,6 +43,13 @@ Result<int> read_whole_number(std::string_view option, std::string_view text, co
   const auto number = number_in<int>(text);
   if (!number || !in_range(*number, range)) return refusal(option, text, "a whole number", range);
   return *number;
+}
+
+Result<std::optional<double>> read_length_unit(std::string_view option, std::string_view text) {
+  if (text.empty()) return std::optional<double>();
+  if (std::find(kLengthUnits.begin(), kLengthUnits.end(), text) == kLengthUnits.end())
+    return fail_as(DiagnosticKind::usage, "{} = {} is neither mm nor inch", option, printable(text));
+  return mm_of_unit(text);
 }
 
 }  // namespace toothpath::app

@@ -1,6 +1,8 @@
-// Numbers of the command line: the one reader of all of them.
+// Numbers and units of the command line: the one reader of all of them.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string_view>
 
 #include "geometry/base/result.h"
@@ -15,5 +17,10 @@ namespace toothpath::app {
 
 /// The same of whole numbers: digits with a sign.
 [[nodiscard]] Result<int> read_whole_number(std::string_view option, std::string_view text, const toml::Range& range);
+
+/// Units of length that an option may say.
+inline constexpr std::array<std::string_view, 2> kLengthUnits = {"mm", "inch"};
+/// mm of such a unit; nothing where the option says none. Refused (kind usage): another word.
+[[nodiscard]] Result<std::optional<double>> read_length_unit(std::string_view option, std::string_view text);
 
 }  // namespace toothpath::app

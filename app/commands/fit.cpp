@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/base/new_file.h"
+#include "app/base/option_number.h"
 #include "app/commands/command.h"
 #include "app/fit/job_text.h"
 #include "app/fit/report.h"
@@ -87,7 +88,7 @@ CommandOutcome run_fit(const FitRequest& request) {
     return failed(Diagnostic{DiagnosticKind::usage, {}, "--points is missing: a file with points of the flanks"});
   if (!request.write_file.empty())
     if (auto fresh = app::check_new_file(request.write_file, "--write"); !fresh) return failed(fresh.error());
-  const auto unit = job::read_point_unit("--points-unit", request.points_unit);
+  const auto unit = app::read_length_unit("--points-unit", request.points_unit);
   if (!unit) return failed(unit.error());
   const auto asked = asked_of(request);
   if (!asked) return failed(asked.error());
@@ -141,7 +142,7 @@ void add_fit(Commands& commands) {
                  "measured points of its flanks, any teeth, any order: x y z[ i j k], DMIS, or an inspection grid",
                  "FILE");
         set.word("--points-unit", request.points_unit, "unit of x, y and z for which the file states none", "UNIT",
-                 job::kPointUnits);
+                 app::kLengthUnits);
         set.number("--ball-diameter", request.ball_diameter_mm,
                    "the points are centres of a ball of this diameter, not places of the surface", job::kBallDiameter);
         set.texts("--free", request.free,

@@ -16,6 +16,7 @@
 #include "app/base/dialog.h"
 #include "app/base/interruption.h"
 #include "app/base/new_file.h"
+#include "app/base/option_number.h"
 #include "app/commands/run.h"
 #include "app/commands/shaper.h"
 #include "app/job/file.h"
@@ -284,7 +285,7 @@ DoneOrErrors wish_number(Wishes& wishes, const Question& question, std::optional
 /// The points of --points, or of a file that is asked for.
 Expected<proposal::PointsOfFile, std::vector<Diagnostic>> choose_points(const NewRequest& request,
                                                                         const Dialog& dialog) {
-  const auto unit = job::read_point_unit("--points-unit", request.points_unit);
+  const auto unit = app::read_length_unit("--points-unit", request.points_unit);
   if (!unit) return std::vector{unit.error()};
   std::string file = request.points;
   if (file.empty() && !dialog.asks())
@@ -308,7 +309,7 @@ DoneOrErrors ask_unit(proposal::PointsOfFile& points, double teeth, const Dialog
   if (!why) return Ok{};
   if (!dialog.asks()) return usage(fmt::format("--points-unit is missing, mm or inch: {}", *why));
   dialog.tell({{"unit of the points", *why}});
-  const auto word = dialog.word("--points-unit", "unit of x, y and z", "", job::kPointUnits);
+  const auto word = dialog.word("--points-unit", "unit of x, y and z", "", app::kLengthUnits);
   if (auto* errors = word.refused()) return *errors;
   auto read = proposal::read_points(points.file, mm_of_unit(word.value()));
   if (!read) return std::vector{read.error()};
@@ -662,7 +663,7 @@ DoneOrErrors choose_tools(const NewRequest& request, const Dialog& dialog, Choic
     return usage("--tool says what a tool library does not, and --tools names none");
   if (!library_file && !request.unit.empty())
     return usage("--library-unit is the unit of a tool library, and --tools names none");
-  if (const auto unit = job::read_point_unit("--library-unit", request.unit); !unit) return std::vector{unit.error()};
+  if (const auto unit = app::read_length_unit("--library-unit", request.unit); !unit) return std::vector{unit.error()};
   const bool used = choice.wishes.route == proposal::Route::ball || choice.wishes.route == proposal::Route::line;
   if (request.tools.empty() || !used) return Ok{};
   if (!library_file) {
@@ -803,7 +804,7 @@ void new_options(OptionSet& set, NewRequest& request) {
            "tools instead of standard sizes: those of a job, or of a tool library of LinuxCNC, Fusion or FreeCAD",
            "FILE");
   set.word("--library-unit", request.unit, "unit of the lengths for which a tool library states none", "UNIT",
-           job::kPointUnits);
+           app::kLengthUnits);
   set.texts("--tool", request.said, "what a tool library does not say of a tool: \"12: stick_out = 40, teeth = 2\"",
             "NUMBER:KEYS");
   for (const Question& question : proposal::questions()) {
@@ -814,7 +815,7 @@ void new_options(OptionSet& set, NewRequest& request) {
   set.text("--points", request.points,
            "a gear by points: a file of x y z[ i j k] of both flanks of one space, in any order", "FILE");
   set.word("--points-unit", request.points_unit, "unit of x, y and z for which the file states none", "UNIT",
-           job::kPointUnits);
+           app::kLengthUnits);
   set.text("--tip", request.tip,
            "its tip surface in the meridian, where not through the last rows of points: r z at both ends",
            "[[R, Z], [R, Z]]");

@@ -1,11 +1,9 @@
 #include "app/job/loose_points.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "app/job/flank_points.h"
-#include "geometry/base/length_unit.h"
 #include "geometry/base/printable.h"
 #include "geometry/inspection/point_file.h"
 #include "geometry/inspection/table_text.h"
@@ -82,7 +80,7 @@ Result<Loose> loose_grid(std::string_view text, const std::string& file) {
     const auto line = inspection::take_line(text, number);
     number = line.number;
     const auto cells = inspection::number_cells(line.text);
-    if (std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return cell.text.empty(); })) continue;
+    if (cells.empty()) continue;
     if (cells.size() != columns)
       return fail_at({file, number, 1}, "{} columns, must be {}: {}", cells.size(), columns,
                      columns == 11 ? kDeviatingGrid : kNominalGrid);
@@ -135,13 +133,6 @@ Result<LoosePoints> read_loose_points(const std::string& file, std::optional<dou
   }
   out.states_unit = stated.has_value() || unit_mm.has_value();
   return out;
-}
-
-Result<std::optional<double>> read_point_unit(const char* option, const std::string& unit) {
-  if (unit.empty()) return std::optional<double>();
-  if (std::find(kPointUnits.begin(), kPointUnits.end(), unit) == kPointUnits.end())
-    return fail_as(DiagnosticKind::usage, "{} = {} is neither mm nor inch", option, printable(unit));
-  return mm_of_unit(unit);
 }
 
 }  // namespace toothpath::job

@@ -1,10 +1,8 @@
 // Measured points of a gear's flanks in any order, read from all files in which machines and spreadsheets save them.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "geometry/flank_grid/point_order.h"
@@ -24,10 +22,5 @@ struct LoosePoints {
 /// Refused: what the readers refuse, with line and column; points beside the axis; a unit that the file states
 /// otherwise (kind usage).
 [[nodiscard]] Result<LoosePoints> read_loose_points(const std::string& file, std::optional<double> unit_mm);
-
-/// Units that an option may say.
-inline constexpr std::array<std::string_view, 2> kPointUnits = {"mm", "inch"};
-/// mm of such a unit; nothing where the option says none. Refused (kind usage): another word.
-[[nodiscard]] Result<std::optional<double>> read_point_unit(const char* option, const std::string& unit);
 
 }  // namespace toothpath::job
