@@ -188,25 +188,18 @@ Expected<Spaces, Refusal> plain_spaces(const SpiralBevelParameters& p) {
 }
 
 /// With its modifications a gear must be whole.
-Expected<std::shared_ptr<const tooth_space::ToothedPart>, Refusal> part_of_gear(const CylindricalParameters& p) {
-  auto made = cylindrical::CylindricalGear::make(p);
-  if (auto* refusals = made.refused()) return std::move(refusals->front());
+template <typename Made>
+Expected<std::shared_ptr<const tooth_space::ToothedPart>, Refusal> whole(const Made& made) {
+  if (const auto* refusals = made.refused()) return refusals->front();
   return part_of(*made);
 }
-Expected<std::shared_ptr<const tooth_space::ToothedPart>, Refusal> part_of_gear(const StraightBevelParameters& p) {
-  auto made = straight_bevel::StraightBevelGear::make(p);
-  if (auto* refusals = made.refused()) return std::move(refusals->front());
-  return part_of(*made);
-}
-Expected<std::shared_ptr<const tooth_space::ToothedPart>, Refusal> part_of_gear(const SpiralBevelParameters& p) {
-  auto made = spiral_bevel::SpiralBevelGear::make(p);
-  if (auto* refusals = made.refused()) return std::move(refusals->front());
-  return part_of(*made);
-}
+auto whole_gear(const CylindricalParameters& p) { return whole(cylindrical::CylindricalGear::make(p)); }
+auto whole_gear(const StraightBevelParameters& p) { return whole(straight_bevel::StraightBevelGear::make(p)); }
+auto whole_gear(const SpiralBevelParameters& p) { return whole(spiral_bevel::SpiralBevelGear::make(p)); }
 
 template <typename P>
 Expected<Spaces, Refusal> modified_spaces(const P& p, const std::vector<modification::Modification>& modifications) {
-  auto plain = part_of_gear(p);
+  auto plain = whole_gear(p);
   if (auto* refusal = plain.refused()) return std::move(*refusal);
   auto part = tooth_space::modified_part(std::move(plain).value(), modifications);
   if (auto* refusal = part.refused()) return std::move(*refusal);

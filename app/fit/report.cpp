@@ -7,9 +7,9 @@
 #include "app/base/units.h"
 #include "app/report/svg/contact_pattern.h"
 #include "app/report/svg/html_text.h"
+#include "geometry/inspection/grid.h"
 #include "geometry/modification/flank_correction.h"
 #include "geometry/tooth_space/exact_space.h"
-#include "geometry/tooth_space/limits.h"
 #include "geometry/tooth_space/modified_part.h"
 
 namespace toothpath::fit {
@@ -59,23 +59,18 @@ struct FlankMap {
   std::vector<modification::FlankDeviation> places;
 };
 FlankMap places_on(const ToothSpace& space, int side, const tooth_space::FlankRectangle& rectangle) {
+  tooth_space::ToothedSolid solid;
+  solid.rings = {{&space, 0}};
+  const auto grid = inspection::inspection_grid(solid, {kMapRows, kMapColumns, 0});
   FlankMap out;
   const auto& outline = space.outline();
-  const auto piece = tooth_space::flank_of(side);
-  const tooth_space::Borders borders = space.borders(piece);
-  const double end = side > 0 ? borders.to : borders.from;
-  for (int row = 0; row < kMapRows; ++row)
-    for (int column = 0; column < kMapColumns; ++column) {
-      const double s = outline.s_from + (outline.s_to - outline.s_from) * column / (kMapColumns - 1);
-      const auto tip = space.tip_edge(side, s);
-      const auto q =
-          tip ? tooth_space::place_at(space, piece, end + (tip->u - end) * row / (kMapRows - 1), s) : std::nullopt;
-      if (!q) return {};
-      const Vec2 share = rectangle.share_at(space, q->p);
-      out.along.push_back(outline.sign * s);
-      out.height.push_back(outline.chart.up(q->p));
-      out.places.push_back({row, column, share.y(), share.x(), 0});
-    }
+  for (const auto& at : grid ? *grid : std::vector<inspection::InspectionPoint>()) {
+    if (at.side != side) continue;
+    const Vec2 share = rectangle.share_at(space, at.p);
+    out.along.push_back(outline.sign * outline.chart.along(at.p));
+    out.height.push_back(outline.chart.up(at.p));
+    out.places.push_back({at.row, at.column, share.y(), share.x(), 0});
+  }
   return out;
 }
 

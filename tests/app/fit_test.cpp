@@ -15,6 +15,7 @@
 #include "geometry/base/angle.h"
 #include "geometry/inspection/grid.h"
 #include "tests/app/program.h"
+#include "tests/geometry/spiral_bevel/samples.h"
 #include "tests/support/files.h"
 
 namespace toothpath::test {
@@ -193,20 +194,9 @@ TEST(Fit, TheSettingsOfASpiralBevelPinionComeBack) {
 
 TEST(Fit, TheWheelOfOneCutComesBack) {
   job::Job truth = job_of(sample("spiral_bevel.toml"));
-  auto& gear = std::get<spiral_bevel::SpiralBevelParameters>(truth.gear);
-  gear.teeth = 36;
-  gear.hand = 1;
-  gear.pitch_angle_rad = radians(71.5666666);
-  gear.tip_angle_rad = radians(73.1333332);
-  gear.root_angle_rad = radians(67.683333267);
-  gear.mean_space_width_mm.reset();
-  spiral_bevel::Cut cut;
-  cut.blades = {spiral_bevel::Blade{77.0255, radians(22), 0.7}, spiral_bevel::Blade{75.3745, radians(22), 0.7}};
-  cut.radial_distance_mm = 72.642731192;
-  cut.cradle_angle_rad = radians(59.2342023);
-  cut.root_angle_rad = *gear.root_angle_rad;
-  cut.ratio_of_roll = 1.051674445;
-  gear.cuts = {cut};
+  auto wheel = nasa_gear();
+  wheel.root_angle_rad = wheel.cuts[0].root_angle_rad;
+  truth.gear = wheel;
   job::Job start = truth;
   auto& other = std::get<spiral_bevel::SpiralBevelParameters>(start.gear).cuts[0];
   other.radial_distance_mm = 72.4;
