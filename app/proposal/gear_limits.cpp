@@ -116,8 +116,8 @@ straight_bevel::StraightBevelParameters straight_bevel_parameters(const Wishes& 
   return p;
 }
 
-Expected<spiral_bevel::SpiralBevelParameters, std::vector<Refusal>> spiral_bevel_parameters(const Wishes& wishes) {
-  if (wishes.spiral) return *wishes.spiral;
+Expected<spiral_bevel::SpiralBevelGear, std::vector<Refusal>> spiral_bevel_gear(const Wishes& wishes) {
+  if (wishes.spiral) return spiral_bevel::SpiralBevelGear::make(*wishes.spiral);
   spiral_bevel::Drawing drawing;
   drawing.teeth = static_cast<int>(wishes.at(Quantity::teeth));
   drawing.mate_teeth = static_cast<int>(wishes.at(Quantity::mate_teeth));
@@ -136,7 +136,7 @@ Expected<spiral_bevel::SpiralBevelParameters, std::vector<Refusal>> spiral_bevel
     }
     auto made = spiral_bevel::SpiralBevelGear::make(settings.value());
     if (auto* refusals = made.refused()) refused = std::move(*refusals);
-    else return std::move(settings.value());
+    else return made;
   }
   return refused;
 }

@@ -30,10 +30,11 @@ struct FaceRange {
 /// Those of a file, or one zone about z = 0.
 [[nodiscard]] cylindrical::CylindricalParameters cylindrical_parameters(const Wishes& wishes);
 
+/// Of the settings of a file, or of a drawing with the largest rounding of the blades that makes a gear. Refused, with
+/// keys of a job: what makes none.
+[[nodiscard]] Expected<spiral_bevel::SpiralBevelGear, std::vector<Refusal>> spiral_bevel_gear(const Wishes& wishes);
+
 /// Gleason proportions for shafts at 90 deg, the largest rounding up to 0.3 modules that the crown gear's teeth carry.
-/// Refused, with keys of a job: settings that make no gear.
-[[nodiscard]] Expected<spiral_bevel::SpiralBevelParameters, std::vector<Refusal>> spiral_bevel_parameters(
-    const Wishes& wishes);
 [[nodiscard]] straight_bevel::StraightBevelParameters straight_bevel_parameters(const Wishes& wishes);
 
 /// Nothing: no tooth has room, or numbers are missing.

@@ -157,10 +157,9 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_straight_bevel(const Wishes
 }
 
 Expected<ChosenGear, std::vector<Diagnostic>> choose_spiral_bevel(const Wishes& wishes) {
-  auto parameters = spiral_bevel_parameters(wishes);
-  if (auto* refusals = parameters.refused()) return located(std::move(*refusals));
-  auto made = spiral_bevel::SpiralBevelGear::make(parameters.value());
-  if (auto* refusals = made.refused()) return of_file(std::move(*refusals), "--rexs");
+  auto made = spiral_bevel_gear(wishes);
+  if (auto* refusals = made.refused())
+    return wishes.spiral ? of_file(std::move(*refusals), "--rexs") : located(std::move(*refusals));
   const spiral_bevel::SpiralBevelGear& gear = made.value();
   const auto& p = gear.parameters();
   const auto& ring = gear.space().outline();
