@@ -14,7 +14,7 @@ namespace toothpath::tool_check {
 class Unsaid {
  public:
   /// Modes behind a check of the tool.
-  void all(std::map<unsigned, const char*> modes) { modes_ = std::move(modes), begun_ = true; }
+  void all(std::map<unsigned, const char*> modes) { modes_ = std::move(modes), checked_ = true; }
   /// Modes at the begin of a program.
   void at_begin(std::map<unsigned, const char*> modes) { modes_ = std::move(modes); }
   void said(unsigned mode) { modes_.erase(mode); }
@@ -25,7 +25,7 @@ class Unsaid {
   [[nodiscard]] bool none() const { return modes_.empty(); }
   /// What is wrong with a move while one is left. @param move  "an axis word"
   [[nodiscard]] std::string text(const char* move) const {
-    if (!begun_)
+    if (!checked_)
       return fmt::format("{} ahead of {}: what it does would depend on the last program", move, modes_.begin()->second);
     return fmt::format(
         "{} behind a check of the tool, which may have changed every mode: {} must be said again ahead "
@@ -35,7 +35,7 @@ class Unsaid {
 
  private:
   std::map<unsigned, const char*> modes_;
-  bool begun_ = false;  // a check of the tool was run
+  bool checked_ = false;  // a check of the tool was run
 };
 
 }  // namespace toothpath::tool_check
