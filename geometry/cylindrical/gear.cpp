@@ -9,6 +9,8 @@
 #include "geometry/base/refusals.h"
 #include "geometry/tooth_space/limits.h"
 
+template class toothpath::tooth_space::KernelSpace<toothpath::cylindrical::InvoluteKernel<double>>;
+
 namespace toothpath::cylindrical {
 namespace {
 

@@ -10,6 +10,9 @@
 #include "geometry/cylindrical/involute_kernel.h"
 #include "geometry/tooth_space/kernel_space.h"
 
+// Made once, in gear.cpp: it takes long to compile.
+extern template class toothpath::tooth_space::KernelSpace<toothpath::cylindrical::InvoluteKernel<double>>;
+
 namespace toothpath::cylindrical {
 
 using InvoluteSpace = tooth_space::KernelSpace<InvoluteKernel<double>>;

@@ -11,6 +11,8 @@
 #include "geometry/spiral_bevel/set_up.h"
 #include "geometry/tooth_space/limits.h"
 
+template class toothpath::tooth_space::KernelSpace<toothpath::spiral_bevel::CutterKernel>;
+
 namespace toothpath::spiral_bevel {
 namespace {
 

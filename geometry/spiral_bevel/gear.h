@@ -11,6 +11,9 @@
 #include "geometry/tooth_space/bevel_body.h"
 #include "geometry/tooth_space/kernel_space.h"
 
+// Made once, in gear.cpp: it takes long to compile.
+extern template class toothpath::tooth_space::KernelSpace<toothpath::spiral_bevel::CutterKernel>;
+
 namespace toothpath::spiral_bevel {
 
 using CutterSpace = tooth_space::KernelSpace<CutterKernel>;

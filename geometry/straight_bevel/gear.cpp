@@ -10,6 +10,8 @@
 #include "geometry/base/refusals.h"
 #include "geometry/tooth_space/limits.h"
 
+template class toothpath::tooth_space::KernelSpace<toothpath::straight_bevel::CrownKernel<double>>;
+
 namespace toothpath::straight_bevel {
 namespace {
 

@@ -10,6 +10,9 @@
 #include "geometry/tooth_space/bevel_body.h"
 #include "geometry/tooth_space/kernel_space.h"
 
+// Made once, in gear.cpp: it takes long to compile.
+extern template class toothpath::tooth_space::KernelSpace<toothpath::straight_bevel::CrownKernel<double>>;
+
 namespace toothpath::straight_bevel {
 
 using CrownSpace = tooth_space::KernelSpace<CrownKernel<double>>;
