@@ -67,8 +67,9 @@ class Inspection : public Refusals {
       return;
     }
     if (!(w.r_f > 0)) {
-      refuse("dedendum_coefficient", "dedendum_coefficient = {:.4f}: the root diameter is {:.4f} mm, limit 0",
-             gear_.dedendum_coefficient, 2 * w.r_f);
+      refuse("dedendum_coefficient",
+             "dedendum_coefficient = {:.4f}: the root diameter is {:.4f} mm, limit 0; less than {:.4f} would do",
+             gear_.dedendum_coefficient, 2 * w.r_f, gear_.dedendum_coefficient + w.r_f / w.m);
       return;
     }
     if (!(w.w_t > 0)) {
@@ -112,15 +113,19 @@ class Inspection : public Refusals {
   void tip(const InvoluteKernel<double>& w) {
     const double form = w.r_b * std::sqrt(1 + w.theta_f * w.theta_f);
     const char* name = gear_.tip_diameter_mm ? "tip_diameter" : "addendum_coefficient";
+    const std::string tip = gear_.tip_diameter_mm
+                                ? fmt::format("tip_diameter = {:.4f} mm", 2 * w.r_a)
+                                : fmt::format("addendum_coefficient = {:.4f}: the tip diameter {:.4f} mm",
+                                              gear_.addendum_coefficient, 2 * w.r_a);
     if (!(w.r_a > form)) {
-      refuse(name, "the tip diameter {:.4f} mm is not above {:.4f} mm, where the involute begins", 2 * w.r_a, 2 * form);
+      refuse(name, "{} is not above {:.4f} mm, where the involute begins", tip, 2 * form);
       return;
     }
     const double land = 2 * w.r_a * (kPi / gear_.teeth - w.eta(w.theta_a)), least = gear_.least_land * gear_.module_mm;
     if (land >= least) return;
     const auto most = tip_diameter_of_land(w, least);
-    refuse(name, "the tip diameter {:.4f} mm leaves a top land of {:.4f} mm, the least is {:.4f} mm ({:g} modules); {}",
-           2 * w.r_a, land, least, gear_.least_land,
+    refuse(name, "{} leaves a top land of {:.4f} mm, the least is {:.4f} mm ({:g} modules); {}", tip, land, least,
+           gear_.least_land,
            most ? fmt::format("a tip_diameter of {:.4f} mm or less would do", std::floor(1e4 * *most) / 1e4)
                 : std::string("no tip diameter would do: less profile_shift is needed"));
   }

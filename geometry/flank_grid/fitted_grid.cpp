@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/base/length_unit.h"
 #include "geometry/base/refusals.h"
 #include "geometry/tooth_space/limits.h"
 #include "geometry/tooth_space/toothed_solid.h"
@@ -19,6 +20,8 @@ using tooth_space::Piece;
 
 constexpr int kLeastTeeth = 5, kMostTeeth = 5000, kLeastPoints = 4, kMostPoints = 400;
 constexpr double kMostRatio = 3;      // of neighbouring chords
+constexpr double kOnePlace = 1e-6;    // mm: two points, or the ends of root and tip
+constexpr double kUnitLength = 1e-3;  // what the length of a normal may lack of 1
 constexpr double kEndsOff = 0.005;    // mm: both ends of the teeth are square to one direction within it
 constexpr double kStraight = 1e-5;    // mm: points of a meridian that lie so close to its chord add nothing
 constexpr double kFarthest = 1e5;     // mm
@@ -136,7 +139,8 @@ class Fitting : public Refusals {
       if (line->size() < 2) refuse(name, "{} has {} points, two or more are needed: its ends", name, line->size());
       for (const Vec2& p : *line)
         if (!(p.x() > 0 && p.norm() < kFarthest))
-          refuse(name, "{}: r {:.6g} mm, z {:.6g} mm is no place beside the axis", name, p.x(), p.y());
+          refuse(name, "{}: r {:.6g} mm, z {:.6g} mm is no place beside the axis: r above 0, both within {:g} mm", name,
+                 p.x(), p.y(), kFarthest);
     }
     for (const int side : {1, -1}) {
       const GridPoints& g = gear_.points(side);
@@ -148,8 +152,11 @@ class Fitting : public Refusals {
 
   void meridians() {
     const Vec2 first = gear_.tip.front() - gear_.root.front(), last = gear_.tip.back() - gear_.root.back();
-    if (!(first.norm() > 1e-6 && last.norm() > 1e-6))
-      return refuse("tip", "the tip begins or ends in the root: the teeth have no height there");
+    if (const double least = std::min(first.norm(), last.norm()); !(least > kOnePlace))
+      return refuse("tip",
+                    "the tip {} in the root: the teeth are {:.3g} mm high there, limit {:g} mm; a tip beyond the root "
+                    "would do",
+                    first.norm() > kOnePlace ? "ends" : "begins", least, kOnePlace);
     const Vec2 sum = first.normalized() + last.normalized(), upwards = sum.normalized();
     const auto off = [&](const Vec2& end) { return std::abs(end.x() * upwards.y() - end.y() * upwards.x()); };
     const double aside = 2 * std::max(off(first), off(last));
@@ -159,7 +166,9 @@ class Fitting : public Refusals {
                     "height, limit {} mm. Ends that are no parallels in the meridian are not there yet",
                     aside, kEndsOff);
     if (upwards.x() < -1e-9)
-      return refuse("tip", "the tip lies nearer to the axis than the root: internal gears are not there");
+      return refuse("tip",
+                    "the tip lies {:.4f} mm nearer to the axis than the root, limit 0: internal gears are not there",
+                    -std::min(first.x(), last.x()));
     auto& ring = kernel.ring;
     ring.chart.sine = std::abs(upwards.x()) < 1e-9 ? 0 : upwards.x();
     ring.chart.cosine = std::abs(upwards.y()) < 1e-9 ? 0 : upwards.y();
@@ -204,12 +213,14 @@ class Fitting : public Refusals {
     if (refusals.size() != before) return;
     if (p.turned == rises_)
       return refuse("points",
-                    "flank {}: column 0 lies at the end of the root, its columns must run as root does, from r {:.4f} "
-                    "mm, z {:.4f} mm",
-                    side, gear_.root.front().x(), gear_.root.front().y());
+                    "flank {}: column 0, at {}, lies at the end of the root, its columns must run as root does, from r "
+                    "{:.4f} mm, z {:.4f} mm: number them the other way round, or give root and tip from their ends",
+                    side, place_words(g.place[0]), gear_.root.front().x(), gear_.root.front().y());
     for (int j = 0; j < g.columns && refusals.size() == before; ++j)
       if (!(chart.up(g.place[g.index(g.rows - 1, j)]) > chart.up(g.place[g.index(0, j)])))
-        refuse_point(side, g.rows - 1, j, "the last row lies below row 0: rows run from the root to the tip");
+        refuse_point(side, g.rows - 1, j,
+                     "the last row lies {:.4f} mm below row 0, limit 0: rows run from the root to the tip",
+                     chart.up(g.place[g.index(0, j)]) - chart.up(g.place[g.index(g.rows - 1, j)]));
     for (int i = 0; i < g.rows && refusals.size() == before; ++i)
       line(side, "row", i, g.columns, [&](int k) { return std::pair{i, k}; });
     for (int j = 0; j < g.columns && refusals.size() == before; ++j)
@@ -228,7 +239,9 @@ class Fitting : public Refusals {
         out.at<double>(between(u, i), between(v, j), place, &normal);
         if (sideways(place, normal) * side > 0) continue;
         return refuse_point(side, i / 2, p.column(j / 2),
-                            "the surface through the points folds next to this one: rows and columns must not cross");
+                            "the surface through the points folds next to this one: its normal has {:.4f} along the "
+                            "azimuth towards the space, limit 0: rows and columns must not cross",
+                            sideways(place, normal) * side);
       }
     if (!g.normal.empty()) compare_normals(side, p, out);
   }
@@ -240,6 +253,7 @@ class Fitting : public Refusals {
     const TensorSpline &a = kernel.plus.spline, &b = kernel.minus.spline;
     int swapped = 0, found = 0;
     std::optional<Vec3> crossing;
+    double worst = 0, swapped_at = 0;  // rad
     for (int i = 0; i < kPlaces; ++i)
       for (int j = 0; j < kPlaces; ++j) {
         const auto share = [](const std::vector<double>& x, int k) {
@@ -252,7 +266,10 @@ class Fitting : public Refusals {
         const double space = angle_from_to(p, *q);
         if (space > 0 && space < kernel.ring.pitch) continue;
         ++swapped;
-        if (!crossing) crossing = p;
+        if (crossing && wrapped(space) >= worst) continue;
+        crossing = p;
+        worst = wrapped(space);
+        swapped_at = space;
       }
     if (found == 0)
       return refuse("points", "the flanks lie nowhere side by side: at no height and place along the teeth");
@@ -260,9 +277,11 @@ class Fitting : public Refusals {
     if (swapped == found)
       return refuse("points",
                     "flank 1 does not lie on the side of negative azimuth of flank -1, less than a pitch ({:.4f} deg) "
-                    "from it: the two must bound one space",
-                    degrees(kernel.ring.pitch));
-    refuse("points", "the flanks cross at {}", place_words(*crossing));
+                    "from it, but {:.4f} deg: the two must bound one space; are flanks 1 and -1 swapped, or is one of "
+                    "them that of another tooth?",
+                    degrees(kernel.ring.pitch), degrees(swapped_at));
+    refuse("points", "the flanks cross at {}: the space is {:.4f} mm wide there, limit 0", place_words(*crossing),
+           radius(*crossing) * worst);
   }
 
   void ball() {
@@ -295,11 +314,16 @@ class Fitting : public Refusals {
       if (const double land = root_land_mm(space, s); !(land > 0))
         return refuse_ball(
             fmt::format("the ball is wider than the space at {}: the fillets overlap by {:.4f} mm", where, -land));
-      if (!space.tip_edge(1, s) || !space.tip_edge(-1, s))
-        return refuse("tip", "the flanks do not reach the tip surface at {}", where);
+      for (const int side : {1, -1})
+        if (!space.tip_edge(side, s))
+          return refuse(
+              "tip",
+              "flank {} does not reach the tip surface at {}: it ends {:.4f} mm below it, limit 0; a tip that "
+              "lies lower by so much would do, or more rows of points",
+              side, where, space.tip(s) - top_of(space, side, s));
       if (const double land = tooth_space::top_land_mm(space, s); !(land > 0))
-        return refuse("tip", "the tooth is pointed: its flanks cross {:.4f} mm before the tip surface at {}", -land,
-                      where);
+        return refuse("tip", "the tooth is pointed: its top land at {} is {:.4f} mm, limit 0{}", where, land,
+                      lower_tip(s));
     }
   }
 
@@ -337,6 +361,31 @@ class Fitting : public Refusals {
     const GridPoints& g = gear_.points(side);
     if (!g.line.empty()) d.position = {gear_.file, g.line[g.index(row, column)], 1};
     add({"points", std::move(d)});
+  }
+  /// Highest place of a flank at s, as far as its points and what may go on beyond them reach; their top where it has
+  /// none.
+  [[nodiscard]] double top_of(const GridSpace& space, int side, double s) const {
+    constexpr int kSteps = 40;
+    const Flank& f = kernel.flank(side);
+    const Chart& chart = kernel.ring.chart;
+    const double v = std::clamp(s, kernel.ball(side).from(), kernel.ball(side).to()),
+                 most = f.spline.u().back() + kMostBeyond * f.spline.height() - kernel.ball(side).contact(v);
+    double top = -INFINITY;
+    for (int k = 0; k <= kSteps; ++k)
+      if (const auto q = tooth_space::place_at(space, tooth_space::flank_of(side), most * k / kSteps, s))
+        top = std::max(top, chart.up(q->p));
+    return std::isfinite(top) ? top : chart.up(f.spline.at(f.spline.u().back(), v));
+  }
+  /// By how much the tip would have to lie lower at s for a land, in words.
+  [[nodiscard]] std::string lower_tip(double s) const {
+    const double height = kernel.tip<double>(s) - up(kernel.ring.chart, gear_.root.front());
+    const auto less = that_does(0, height, [&](double lower) {
+      GridKernel other = kernel;
+      other.tip_from.y() -= lower;
+      const GridSpace space(std::move(other));
+      return space.tip_edge(1, s) && space.tip_edge(-1, s) && tooth_space::top_land_mm(space, s) > 0;
+    });
+    return less ? fmt::format("; a tip that lies {:.4f} mm lower would do", std::ceil(1e4 * *less) / 1e4) : "";
   }
   /// With the largest ball that would do.
   void refuse_ball(const std::string& why) {
@@ -445,12 +494,14 @@ class Fitting : public Refusals {
       const Vec3 chord = place(k) - place(k - 1);
       const auto [row, column] = at(k);
       const double length = chord.norm(), last = before.norm();
-      if (!(length > 1e-6))
-        return refuse_point(side, row, column, "the point lies {:.3g} mm from the one before it on {} {}", length, kind,
-                            number);
+      if (!(length > kOnePlace))
+        return refuse_point(side, row, column,
+                            "the point lies {:.3g} mm from the one before it on {} {}, limit {:g} mm: is it doubled?",
+                            length, kind, number, kOnePlace);
       if (k > 1 && !(chord.dot(before) > 0))
-        return refuse_point(side, row, column, "{} {} folds: it turns back behind the point before this one", kind,
-                            number);
+        return refuse_point(side, row, column,
+                            "{} {} folds: it turns back behind the point before this one, by {:.2f} deg, limit 90 deg",
+                            kind, number, degrees(angle_between(chord, before)));
       if (const double ratio = std::max(length, last) / std::min(length, last); k > 1 && ratio > kMostRatio)
         return refuse_point(side, row, column,
                             "the chords on either side of the point before this one on {} {} are {:.4f} and {:.4f} "
@@ -471,14 +522,21 @@ class Fitting : public Refusals {
       for (int j = 0; j < g.columns; ++j) {
         const Vec3& p = g.place[g.index(i, j)];
         if (!(p.norm() < kFarthest))
-          return refuse_point(side, i, j, "({:g}, {:g}, {:g}) mm is no place beside the axis", p.x(), p.y(), p.z());
-        const Vec2 rz(radius(p), p.z());
-        const double off = (rz - rz.cwiseMax(low).cwiseMin(high)).norm();
-        if (!(off < room))
-          return refuse_point(side, i, j,
-                              "the point, at {}, lies {:.4f} mm beside the teeth between root and tip: another unit, "
-                              "or another frame",
-                              place_words(p), off);
+          return refuse_point(side, i, j, "({:g}, {:g}, {:g}) mm is no place beside the axis, within {:g} mm", p.x(),
+                              p.y(), p.z(), kFarthest);
+        const auto beside = [&](double unit_mm) {
+          const Vec2 rz = unit_mm * Vec2(radius(p), p.z());
+          return (rz - rz.cwiseMax(low).cwiseMin(high)).norm();
+        };
+        if (beside(1) < room) continue;
+        std::string unit = "are its axes another frame?";
+        for (const auto& [unit_mm, name] : {std::pair{kInchMm, "inches"}, std::pair{1e3, "m"}, std::pair{1e-3, "um"}})
+          if (beside(unit_mm) < room) unit = fmt::format("are x, y, z in {}?", name);
+        return refuse_point(
+            side, i, j,
+            "the point, at {}, lies {:.4f} mm beside the teeth between root and tip, limit {:.4f} mm: {} "
+            "They are read in mm, about the axis of root and tip",
+            place_words(p), beside(1), room, unit);
       }
   }
 
@@ -490,14 +548,16 @@ class Fitting : public Refusals {
         flank.at<double>(flank.spline.u()[std::size_t(i)], flank.spline.v()[std::size_t(j)], place, &normal);
         const int column = p.column(j);
         const Vec3& given = g.normal[g.index(i, column)];
-        if (!(std::abs(given.norm() - 1) < 1e-3))
-          return refuse_point(side, i, column, "i, j, k have the length {:.6g}, 1 is needed", given.norm());
+        if (!(std::abs(given.norm() - 1) < kUnitLength))
+          return refuse_point(side, i, column, "i, j, k have the length {:.6g}, limit 1 within {:g}", given.norm(),
+                              kUnitLength);
         const double angle = angle_between(normal, given);
         if (angle > radians(90))
-          return refuse_point(side, i, column,
-                              "the normal i, j, k points into the material: that of flank {} has a {} part along the "
-                              "azimuth",
-                              side, side > 0 ? "positive" : "negative");
+          return refuse_point(
+              side, i, column,
+              "the normal i, j, k points into the material: it stands at {:.2f} deg to that of the "
+              "surface, limit 90 deg; that of flank {} has a {} part along the azimuth; are flanks 1 and -1 swapped?",
+              degrees(angle), side, side > 0 ? "positive" : "negative");
         if (quality.normals_rad && angle <= *quality.normals_rad) continue;
         quality.normals_rad = angle;
         quality.normals_at = fmt::format("flank {}, row {}, column {}", side, i, column);
@@ -560,8 +620,8 @@ Expected<FittedGrid, std::vector<Refusal>> fit_grid(const FlankGridParameters& p
   const auto stop = [&] { return !fitting.refusals.empty(); };
   fitting.numbers_in_range();
   if (!stop()) fitting.meridians();
-  if (!stop())
-    for (const int side : {1, -1}) fitting.flank(side);
+  for (const int side : {1, -1})
+    if (!stop()) fitting.flank(side);
   if (!stop()) fitting.opposite();
   if (!stop()) fitting.ball();
   if (stop()) return std::move(fitting.refusals);

@@ -147,9 +147,21 @@ class Inspection : public Refusals {
       refuse("backlash", "backlash contradicts mean_space_width: give one of the two");
     const double pitch = kTwoPi * gear_.mean_cone_distance() * std::sin(gear_.pitch_angle_rad) / gear_.teeth;
     if (!one && !(asked_space_width(gear_) < pitch))
-      refuse(gear_.backlash_mm ? "backlash" : "mean_space_width",
-             "a space of {:.4f} mm is not below {:.4f} mm, the pitch at the mean cone distance",
-             asked_space_width(gear_), pitch);
+      refuse(
+          width_key(),
+          "{} = {:.4f} mm: a space of {:.4f} mm is not below {:.4f} mm, the pitch at the mean cone distance; {:.4f} mm "
+          "or less leaves a tooth",
+          width_key(), gear_.backlash_mm.value_or(asked_space_width(gear_)), asked_space_width(gear_), pitch,
+          told(stated_width(pitch)));
+  }
+
+  /// What states the width of the space of two cuts, and the number that it has there for a width.
+  [[nodiscard]] const char* width_key() const { return gear_.backlash_mm ? "backlash" : "mean_space_width"; }
+  [[nodiscard]] double stated_width(double width_mm) const {
+    if (!gear_.backlash_mm) return width_mm;
+    const double R_m = gear_.mean_cone_distance();
+    return 2 * (width_mm - kPi * R_m * std::sin(gear_.pitch_angle_rad) / gear_.teeth) * gear_.outer_cone_distance_mm /
+           R_m;
   }
 
   void rounding(const Cut& cut) {
@@ -175,25 +187,36 @@ class Inspection : public Refusals {
     if (gear_.root_angle_rad &&
         gear_.face_width_mm * std::abs(std::sin(*gear_.root_angle_rad - first.root_angle_rad)) > kSameLine)
       refuse("root_angle",
-             "root_angle = {:.6f} deg differs from machine_root_angle of the cut, {:.6f} deg, by {:.4f} mm "
-             "over the face",
+             "root_angle = {:.6f} deg differs from machine_root_angle of the cut, {:.6f} deg, by {:.4f} mm over the "
+             "face, limit {:g} mm; without the key it is that of the cut",
              degrees(*gear_.root_angle_rad), degrees(first.root_angle_rad),
-             gear_.face_width_mm * std::abs(std::sin(*gear_.root_angle_rad - first.root_angle_rad)));
+             gear_.face_width_mm * std::abs(std::sin(*gear_.root_angle_rad - first.root_angle_rad)), kSameLine);
     const double apex = -root_apex_z(first);
-    if (gear_.root_apex_mm && std::abs(*gear_.root_apex_mm - apex) * std::sin(first.root_angle_rad) > kSameLine)
-      refuse("root_apex",
-             "root_apex = {:.6f} mm: machine_center_to_crossing_point + sliding_base / sin(machine_root_angle) of "
-             "the cut is {:.6f} mm",
-             *gear_.root_apex_mm, apex);
+    const double deeper = gear_.root_apex_mm.value_or(apex) - apex,
+                 beside = std::abs(deeper) * std::sin(first.root_angle_rad);
+    if (beside > kSameLine)
+      refuse(
+          "root_apex",
+          "root_apex = {:.6f} mm: machine_center_to_crossing_point + sliding_base / sin(machine_root_angle) of "
+          "the cut is {:.6f} mm; the root cones lie {:.4f} mm apart, limit {:g} mm; without the key it is that of the "
+          "cut",
+          *gear_.root_apex_mm, apex, beside, kSameLine);
     if (gear_.cuts.size() < 2) return;
     for (const double R : {gear_.outer_cone_distance_mm, gear_.outer_cone_distance_mm - gear_.face_width_mm}) {
       const auto h = [&](const Cut& c) { return cone_height(gear_, c.root_angle_rad, root_apex_z(c), -R); };
       const double apart = h(gear_.cuts[1]) - h(first);
       if (std::abs(apart) <= kSameLine) continue;
-      refuse("cut[1].machine_root_angle",
-             "the root cones of the two cuts lie {:.4f} mm apart at cone distance {:.4f} mm, the limit is {:g} mm: "
-             "machine_root_angle, sliding_base or machine_center_to_crossing_point",
-             std::abs(apart), R, kSameLine);
+      const Cut& second = gear_.cuts[1];
+      const bool angle =
+          std::abs(std::sin(second.root_angle_rad - first.root_angle_rad)) * gear_.face_width_mm > kSameLine;
+      const double sliding = (apex - second.machine_center_mm) * std::sin(first.root_angle_rad);
+      refuse(
+          angle ? "cut[1].machine_root_angle" : "cut[1].sliding_base",
+          "{} = {:.6f} {}: the root cones of the two cuts lie {:.4f} mm apart at cone distance {:.4f} mm, limit {:g} "
+          "mm; {}a sliding_base of {:.6f} mm would do here, or another machine_center_to_crossing_point",
+          angle ? "machine_root_angle" : "sliding_base",
+          angle ? degrees(second.root_angle_rad) : second.sliding_base_mm, angle ? "deg" : "mm", std::abs(apart), R,
+          kSameLine, angle ? fmt::format("{:.6f} deg with ", degrees(first.root_angle_rad)) : std::string(), sliding);
       return;
     }
   }
@@ -241,12 +264,7 @@ class Inspection : public Refusals {
       if (!sound(tooth_space::flank_of(side), u)) return;
     }
     for (const double v : {k.v_at(tooth_space::flank_of(side), tip->u, s), s})
-      if (f.generated && !(f.work(f.parameter(v)).ratio > 0))
-        return refuse(
-            cut_key(gear_, i, "modified_roll_coefficients"),
-            "modified_roll_coefficients: the work stands still at a roll of {:.4f} deg, which cone distance {:.4f} mm "
-            "needs",
-            degrees(f.parameter(v)), -s);
+      if (f.generated && !(f.work(f.parameter(v)).ratio > 0)) return add(stands_still(gear_, i, f, f.parameter(v), -s));
   }
 
   void no_root(const CutterSpace& space, std::size_t i, double s) {
@@ -305,7 +323,7 @@ class Inspection : public Refusals {
   void pointed(double s, double land) {
     refuse("tip_angle",
            "tip_angle = {:.4f} deg: the tooth is pointed below the face cone at cone distance {:.4f} mm, its top land "
-           "is {:.4f} mm",
+           "is {:.4f} mm, limit 0",
            degrees(gear_.tip_angle_rad), -s, land);
   }
 
@@ -316,9 +334,9 @@ class Inspection : public Refusals {
       if (spiral > kWrongHand) continue;
       return refuse(
           cut_key(gear_, i, "center_roll_position"),
-          "center_roll_position = {:.4f} deg makes a {}-hand gear, spiral angle {:.2f} deg; positive angles make "
-          "the hand that is asked for",
-          degrees(k.flanks[i].q), k.hand > 0 ? "left" : "right", -degrees(spiral));
+          "center_roll_position = {:.4f} deg makes a {}-hand gear, spiral angle {:.2f} deg, limit {:g} deg; positive "
+          "angles make the hand that is asked for",
+          degrees(k.flanks[i].q), k.hand > 0 ? "left" : "right", -degrees(spiral), -degrees(kWrongHand));
     }
   }
 
@@ -328,14 +346,17 @@ class Inspection : public Refusals {
       const double r = space.outline().chart.r(s, lowest(space, s)),
                    lack = -root / r * gear_.mean_cone_distance() * std::sin(gear_.pitch_angle_rad);
       if (gear_.cuts.size() > 1)
-        refuse(gear_.backlash_mm ? "backlash" : "mean_space_width",
-               "a space of {:.4f} mm is narrower than its root: the fillets cross by {:.4f} mm at cone distance {:.4f} "
-               "mm; "
-               "{:.4f} or more would do",
-               asked_space_width(gear_), -root, -s, std::ceil(1e4 * (asked_space_width(gear_) + lack)) / 1e4);
+        refuse(width_key(),
+               "{} = {:.4f} mm: a space of {:.4f} mm is narrower than its root: the fillets cross by {:.4f} mm at cone "
+               "distance {:.4f} mm, limit 0; {:.4f} or more would do",
+               width_key(), gear_.backlash_mm.value_or(asked_space_width(gear_)), asked_space_width(gear_), -root, -s,
+               std::ceil(1e4 * stated_width(asked_space_width(gear_) + lack)) / 1e4);
       else
         refuse("cut[0].blade_point_radius",
-               "the fillets cross by {:.4f} mm at cone distance {:.4f} mm: the blades are too close", -root, -s);
+               "blade_point_radius = [{:.4f}, {:.4f}] mm: the fillets cross by {:.4f} mm at cone distance {:.4f} mm, "
+               "limit "
+               "0: the blades are too close",
+               gear_.cuts[0].blades[0].point_radius_mm, gear_.cuts[0].blades[1].point_radius_mm, -root, -s);
       return;
     }
     const double land = tooth_space::top_land_mm(space, s);
@@ -439,7 +460,22 @@ std::string way_out(const SpiralBevelParameters& gear, const std::string& key) {
     return x ? fmt::format("; a tool_edge_radius of {:.4f} mm or less would do", told(*x))
              : "; a deeper cut or other blades are needed";
   }
-  if (ends(".radial_distance")) return "; another blade_point_radius or center_roll_position is needed";
+  if (ends(".radial_distance")) {
+    const auto cut = std::size_t(key[4] - '0');
+    const double S = gear.cuts[cut].radial_distance_mm;
+    const auto radial = [&](SpiralBevelParameters& p, double x) { p.cuts[cut].radial_distance_mm = x; };
+    if (const auto x = search(S, 0.5 * S, radial)) return fmt::format("; {:.4f} mm would do", told(*x));
+    if (const auto x = search(S, 1.5 * S, radial)) return fmt::format("; {:.4f} mm would do", up(*x));
+    return "; another blade_point_radius or center_roll_position is needed";
+  }
+  if (ends(".modified_roll_coefficients")) {
+    const auto x = search(1, 0, [&](SpiralBevelParameters& p, double share) {
+      for (Cut& cut : p.cuts)
+        for (double& c : cut.modified) c *= share;
+    });
+    return x ? fmt::format("; coefficients of {:.1f} % of them would do", std::floor(1e3 * *x) / 10)
+             : "; smaller coefficients are needed";
+  }
   return "";
 }
 

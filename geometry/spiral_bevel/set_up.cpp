@@ -1,6 +1,7 @@
 #include "geometry/spiral_bevel/set_up.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -154,7 +155,7 @@ std::optional<Refusal> meet_pitch_cone(const SpiralBevelParameters& gear, Cutter
   if (!(h_F < 0))
     return Refusal{cut_key(gear, flank, "sliding_base"),
                    fail("sliding_base = {:.4f} mm: the {} flank begins {:.4f} mm above the pitch cone at cone distance "
-                        "{:.4f} mm",
+                        "{:.4f} mm, limit 0",
                         gear.cuts[cut_of(gear, flank)].sliding_base_mm, name, h_F, R_m)};
   // Upwards along the blade in steps: the pitch cone may lie far above the fillet.
   Vec2& at = k.middle[flank];
@@ -173,14 +174,11 @@ std::optional<Refusal> meet_pitch_cone(const SpiralBevelParameters& gear, Cutter
 }
 
 /// The work turns with the cradle over the whole face.
-std::optional<Refusal> stands_still(const SpiralBevelParameters& gear, const CutterKernel& k, std::size_t flank) {
+std::optional<Refusal> turns_back(const SpiralBevelParameters& gear, const CutterKernel& k, std::size_t flank) {
   const CutFlank& f = k.flanks[flank];
   for (const double s : {-k.R_e, -k.R_i})
     if (const double roll = f.parameter(s); f.generated && !(f.work(roll).ratio > 0))
-      return Refusal{cut_key(gear, flank, "modified_roll_coefficients"),
-                     fail("modified_roll_coefficients: the work stands still or turns back at a roll of {:.4f} deg, "
-                          "which cone distance {:.4f} mm needs",
-                          degrees(roll), -s)};
+      return stands_still(gear, flank, f, roll, -s);
   return {};
 }
 
@@ -191,6 +189,15 @@ std::size_t cut_of(const SpiralBevelParameters& gear, std::size_t flank) {
 }
 std::string cut_key(const SpiralBevelParameters& gear, std::size_t flank, const char* name) {
   return fmt::format("cut[{}].{}", cut_of(gear, flank), name);
+}
+
+Refusal stands_still(const SpiralBevelParameters& gear, std::size_t flank, const CutFlank& f, double roll_rad,
+                     double cone_distance_mm) {
+  const std::vector<double>& modified = gear.cuts[cut_of(gear, flank)].modified;
+  return {cut_key(gear, flank, "modified_roll_coefficients"),
+          fail("modified_roll_coefficients = [{:g}]: work per cradle is {:.4f} at a roll of {:.4f} deg, which cone "
+               "distance {:.4f} mm needs, limit 0: the work stands still or turns back",
+               fmt::join(modified, ", "), f.work(roll_rad).ratio, degrees(roll_rad), cone_distance_mm)};
 }
 
 double root_apex_z(const Cut& cut) {
@@ -233,7 +240,7 @@ Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear) {
                           k.flanks[i].S, i == 0 ? "outside" : "inside", R_m)};
   }
   for (std::size_t i = 0; i < 2; ++i)
-    if (auto refusal = stands_still(gear, k, i)) return std::move(*refusal);
+    if (auto refusal = turns_back(gear, k, i)) return std::move(*refusal);
   const bool one_cone = std::abs(concave.root_angle_rad - convex.root_angle_rad) < kSameRoot &&
                         std::abs(root_apex_z(concave) - root_apex_z(convex)) < kSameRoot;
   const bool tilted = concave.tilt_rad != 0 || convex.tilt_rad != 0;

@@ -15,6 +15,10 @@ namespace toothpath::spiral_bevel {
 /// "cut[1].": where the settings of a flank stand in a job.
 [[nodiscard]] std::string cut_key(const SpiralBevelParameters& gear, std::size_t flank, const char* name);
 
+/// Refused modified roll of a flank: at that roll the work stands still or turns back against the cradle.
+[[nodiscard]] Refusal stands_still(const SpiralBevelParameters& gear, std::size_t flank, const CutFlank& f,
+                                   double roll_rad, double cone_distance_mm);
+
 /// z of the apex of the root cone of a cut without tilt.
 [[nodiscard]] double root_apex_z(const Cut& cut);
 /// Where the root cone of a cut, or a cone of half angle `angle` with its apex at z, lies in the chart: h at s.

@@ -69,8 +69,9 @@ class Inspection : public Refusals {
       return;
     }
     if (!(w.theta_f < gear_.pitch_angle_rad))
-      refuse("dedendum", "dedendum = {:.4f} mm gives a root angle of {:.4f} deg, which is not above 0",
-             gear_.dedendum_mm, degrees(gear_.pitch_angle_rad - w.theta_f));
+      return refuse(
+          "dedendum", "dedendum = {:.4f} mm gives a root angle of {:.4f} deg, limit 0; less than {:.4f} mm would do",
+          gear_.dedendum_mm, degrees(gear_.pitch_angle_rad - w.theta_f), w.R_e * std::tan(gear_.pitch_angle_rad));
     const double h_root = -std::tan(w.theta_f) * w.R_i, h_tip = w.tip<double>(-w.R_i);
     if (!(h_tip > h_root))
       refuse_tip(-w.R_i, fmt::format("the face cone lies {:.4f} mm below the root cone", h_root - h_tip));
@@ -164,15 +165,13 @@ class Inspection : public Refusals {
       }
       if (land >= least * share) continue;
       if (!(land > 0))
-        refuse_tip(s, land < 0
-                          ? fmt::format("the tooth is pointed below the face cone, its top land is {:.4f} mm", land)
-                          : std::string("the flanks end below the face cone"));
+        refuse_tip(
+            s, land < 0
+                   ? fmt::format("the tooth is pointed below the face cone, its top land is {:.4f} mm (limit 0)", land)
+                   : std::string("the flanks end below the face cone"));
       else
-        refuse(
-            "addendum",
-            "the top land at cone distance {:.4f} mm is {:.4f} mm, the least is {:.4f} mm ({:g} modules there); less "
-            "addendum, or a larger thickness_shift",
-            -s, land, least * share, gear_.least_land);
+        refuse_tip(s, fmt::format("the top land is {:.4f} mm, the least is {:.4f} mm ({:g} modules)", land,
+                                  least * share, gear_.least_land));
       return;
     }
   }

@@ -287,7 +287,7 @@ TEST_F(FlankGrid, EveryLimitIsRefusedByItsKey) {
       {"points", "have the length", [](auto& g) { g.minus.normal[13] *= 2; }},
       {"points", "folds", [](auto& g) { std::swap(g.plus.place[20], g.plus.place[21]); }},
       {"points", "from the one before", [](auto& g) { g.plus.place[20] = g.plus.place[21]; }},
-      {"points", "another unit",
+      {"points", "in inches? They are read in mm",
        [](auto& g) {
          for (auto& p : g.plus.place) p /= 25.4;
        }},

@@ -466,7 +466,7 @@ TEST(SpiralBevel, EveryLimitIsRefusedByItsKey) {
       {"cut[0].flank", nasa_gear, [](P& g) { g.cuts[0].flank = spiral_bevel::Cuts::concave; }},
       {"cut[1].flank", nasa_pinion, [](P& g) { g.cuts[1] = g.cuts[0]; }},
       {"cut[1].machine_root_angle", nasa_pinion, [](P& g) { g.cuts[1].root_angle_rad += radians(0.02); }},
-      {"cut[1].machine_root_angle", nasa_pinion, [](P& g) { g.cuts[1].sliding_base_mm += 0.01; }},
+      {"cut[1].sliding_base", nasa_pinion, [](P& g) { g.cuts[1].sliding_base_mm += 0.01; }},
       {"cut[1].generated", nasa_pinion, [](P& g) { g.cuts[1].generated = false; }},
       {"cut[0].blade_point_radius", nasa_gear, [](P& g) { g.cuts[0].blades[0].point_radius_mm = 75; }},
       {"cut[0].tool_edge_radius", nasa_gear, [](P& g) { g.cuts[0].blades[0].edge_radius_mm = 2; }},

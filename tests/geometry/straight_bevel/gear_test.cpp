@@ -192,6 +192,8 @@ TEST(StraightBevel, EveryLimitIsRefusedByItsKey) {
       {"face_width", [](auto& g) { g.face_width_mm = 65; }},
       {"addendum", [](auto& g) { g.addendum_mm = 0; }},
       {"addendum", [](auto& g) { g.addendum_mm = 7; }},
+      {"addendum", [](auto& g) { g.tip_angle_rad.reset(), g.addendum_mm = 4.9, g.least_land = 0.6; }},
+      {"dedendum", [](auto& g) { g.dedendum_mm = 35; }},
       {"dedendum", [](auto& g) { g.dedendum_mm = NAN; }},
       {"dedendum", [](auto& g) { g.dedendum_mm = 8; }},
       {"tip_angle", [](auto& g) { g.tip_angle_rad = radians(44); }},
