@@ -15,7 +15,8 @@ namespace toothpath::fit {
 namespace {
 
 constexpr int kMostSteps = 200, kRounds = 4;
-constexpr double kStep = 1e-4;          // of a reach: derivatives by numbers are differences over twice that
+constexpr double kStep =
+    1e-4;  // of a reach: derivatives by numbers are differences over twice that, at a limit over once
 constexpr double kAtBound = 1e-9;       // of a reach
 constexpr double kRank = 1e-7;          // of the strongest combination of numbers: weaker ones are none
 constexpr double kAlike = 0.5;          // of the greatest part of a combination: numbers that may be held for it
@@ -141,9 +142,11 @@ class Problem {
                                   : -p.reach * kDegree * seen[i].n.dot(Vec3::UnitZ().cross(seen[i].q));
       return true;
     }
+    const Number& number = numbers_.free[p.index];
     std::vector<double> low = values, high = values;
-    low[parameter] -= kStep * p.reach;
-    high[parameter] += kStep * p.reach;
+    low[parameter] = std::max(values[parameter] - kStep * p.reach, std::min(number.least, values[parameter]));
+    high[parameter] = std::min(values[parameter] + kStep * p.reach, std::max(number.most, values[parameter]));
+    const double step = (high[parameter] - low[parameter]) / p.reach;
     const auto below = spaces_at(low), above = spaces_at(high);
     if (!below || !above) return false;
     for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -152,7 +155,7 @@ class Problem {
       const auto a = (*below)[std::size_t(at.zone)]->point(piece, seen[i].u, seen[i].v),
                  b = (*above)[std::size_t(at.zone)]->point(piece, seen[i].u, seen[i].v);
       if (!a || !b) return false;
-      to[Eigen::Index(i)] = -seen[i].n.dot(b->p - a->p) / (2 * kStep);
+      to[Eigen::Index(i)] = -seen[i].n.dot(b->p - a->p) / step;
     }
     return true;
   }
@@ -357,6 +360,10 @@ Result<Fitted> fit_gear(const job::Job& job, const job::LoosePoints& points, con
   problem.placing = placed_on(*spaces, points, {}, asked.turns);
   if (problem.placing.points.empty())
     return in_file(fail("no point lies beside a flank of {}: another gear, frame or unit", job.file));
+  if (problem.placing.beside > problem.placing.points.size() + problem.placing.below_flanks)
+    return in_file(
+        fail("{} of {} points lie where the gear of {} has no flank, {} on flanks: another gear, frame or unit",
+             problem.placing.beside, points.points.size(), job.file, problem.placing.points.size()));
   if (asked.turns) {
     Row& turn = problem.parameters.front().row;
     turn.start = turn.value = degrees(problem.placing.turn_rad);

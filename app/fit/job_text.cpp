@@ -69,7 +69,7 @@ std::string neighbour(const std::string& key) {
   const auto dot = key.rfind('.');
   if (dot == std::string::npos) return "gear.type";
   const std::string table = key.substr(0, dot);
-  return "gear." + table + (table.starts_with("cut") ? ".flank" : ".from");
+  return "gear." + table + ".flank";  // of a zone all keys must stand there
 }
 
 }  // namespace

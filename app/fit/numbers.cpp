@@ -3,23 +3,24 @@
 #include <cmath>
 #include <type_traits>
 
+#include "app/job/form_mill.h"
 #include "geometry/base/angle.h"
-#include "geometry/cylindrical/part.h"
-#include "geometry/spiral_bevel/gear.h"
+#include "geometry/face_gear/reference_radius.h"
 #include "geometry/spiral_bevel/set_up.h"
-#include "geometry/straight_bevel/gear.h"
-#include "geometry/tooth_space/modified_part.h"
 
 namespace toothpath::fit {
 namespace {
 
+using bevel_gear::BevelGearParameters;
 using cylindrical::CylindricalParameters;
+using face_gear::FaceGearParameters;
 using spiral_bevel::SpiralBevelParameters;
 using straight_bevel::StraightBevelParameters;
 
 constexpr double kAngleReach = 3;     // deg
 constexpr double kLengthReach = 0.5;  // modules
 constexpr double kRatioReach = 0.03;  // of the ratio of roll
+constexpr double kJustBelow = 1e-9;   // of a length that a number must stay below
 constexpr double kAsWide = 1e-9;      // rad: two zones with as much helix angle
 
 /// @param of  the number in the parameters, in mm or rad
@@ -44,32 +45,113 @@ Number within(Number n, double least, double most) {
   return n;
 }
 
+// Numbers of several types.
+
+template <typename P>
+Number pressure_angle() {
+  return within(number<P>("pressure_angle", "deg", kAngleReach, [](P& g) -> double& { return g.pressure_angle_rad; }),
+                5, 40);
+}
+template <typename P>
+Number module(double size) {
+  return number<P>("module", "mm", 0.1 * size, [](P& g) -> double& { return g.module_mm; });
+}
+template <typename P>
+Number outer_transverse_module(double size) {
+  return number<P>("outer_transverse_module", "mm", 0.1 * size,
+                   [](P& g) -> double& { return g.outer_transverse_module_mm; });
+}
+template <typename P>
+Number pitch_angle() {
+  return number<P>("pitch_angle", "deg", kAngleReach, [](P& g) -> double& { return g.pitch_angle_rad; });
+}
+/// @param module  below which it must stay
+template <typename P>
+Number backlash(double module) {
+  return within(number<P>("backlash", "mm", kLengthReach * module, [](P& g) -> double& { return g.backlash_mm; }), 0,
+                (1 - kJustBelow) * module);
+}
+
+/// Of every zone; two zones of as much angle keep that.
+template <typename P>
+void add_helix_angles(const P& p, Numbers& out) {
+  const auto& zones = p.zones;
+  const bool alike =
+      zones.size() == 2 && std::abs(std::abs(zones[0].helix_angle_rad) - std::abs(zones[1].helix_angle_rad)) < kAsWide;
+  for (std::size_t k = 0; k < zones.size(); ++k) {
+    Number helix = number<P>(fmt::format("zone[{}].helix_angle", k), "deg", kAngleReach,
+                             [k](P& g) -> double& { return g.zones[k].helix_angle_rad; });
+    (k > 0 && alike ? out.follow : out.free).push_back(within(std::move(helix), -60, 60));
+  }
+  if (!alike) return;
+  const double sign = zones[0].helix_angle_rad * zones[1].helix_angle_rad < 0 ? -1 : 1;
+  out.settle = [sign](Gear& gear) {
+    auto& its = std::get<P>(gear).zones;
+    its[1].helix_angle_rad = sign * its[0].helix_angle_rad;
+  };
+}
+
+Numbers numbers_in(const FaceGearParameters& p, const job::Job&) {
+  using P = FaceGearParameters;
+  Numbers out;
+  out.module_mm = p.module_mm;
+  out.teeth = p.teeth;
+  const double length = kLengthReach * p.module_mm;
+  out.free.push_back(backlash<P>(p.module_mm));
+  add_helix_angles(p, out);
+  out.free.push_back(pressure_angle<P>());
+  if (p.zones.size() == 2)  // of one zone it turns the gear and no more
+    out.free.push_back(within(number<P>("reference_radius", "mm", length,
+                                        [](P& g) -> double& {
+                                          g.reference_radius_mm = face_gear::reference_radius_of(g);
+                                          return *g.reference_radius_mm;
+                                        }),
+                              1e-3, INFINITY));
+  out.free.push_back(
+      within(number<P>("shaft_angle", "deg", kAngleReach, [](P& g) -> double& { return g.shaft_angle_rad; }), 60, 120));
+  const double most = (1 - kJustBelow) * p.zones.front().inner_radius_mm;
+  out.free.push_back(
+      within(number<P>("offset", "mm", length, [](P& g) -> double& { return g.offset_mm; }), -most, most));
+  out.free.push_back(seldom(module<P>(p.module_mm)));
+  return out;
+}
+
+Numbers numbers_in(const BevelGearParameters& p, const job::Job& job) {
+  using P = BevelGearParameters;
+  const double module = p.outer_transverse_module_mm, length = kLengthReach * module;
+  Numbers out;
+  out.module_mm = module;
+  out.teeth = p.teeth;
+  out.free.push_back(backlash<P>(module));
+  out.free.push_back(pressure_angle<P>());
+  out.free.push_back(within(
+      number<P>("outer_spiral_angle", "deg", kAngleReach, [](P& g) -> double& { return g.outer_spiral_angle_rad; }), 0,
+      60));
+  if (p.form == bevel_gear::BevelForm::herringbone)  // of a single hand it turns the gear and no more
+    out.free.push_back(
+        within(number<P>("apex_cone_distance", "mm", length, [](P& g) -> double& { return g.apex_cone_distance_mm; }),
+               1e-3, INFINITY));
+  if (job.positions.contains("gear.pitch_angle")) out.free.push_back(within(seldom(pitch_angle<P>()), 0.01, 90));
+  out.free.push_back(seldom(outer_transverse_module<P>(module)));
+  if (p.mill)
+    out.free.push_back(
+        within(seldom(number<P>("mill.module", "mm", 0.1 * module, [](P& g) -> double& { return g.mill->module_mm; })),
+               0.01, 100));
+  return out;
+}
+
 Numbers numbers_in(const CylindricalParameters& p, const job::Job&) {
   using P = CylindricalParameters;
   Numbers out;
   out.module_mm = p.module_mm;
   out.teeth = p.teeth;
   out.free.push_back(number<P>("profile_shift", "", 0.5, [](P& g) -> double& { return g.profile_shift; }));
-  const bool alike = p.zones.size() == 2 &&
-                     std::abs(std::abs(p.zones[0].helix_angle_rad) - std::abs(p.zones[1].helix_angle_rad)) < kAsWide;
-  for (std::size_t k = 0; k < p.zones.size(); ++k) {
-    Number helix = number<P>(fmt::format("zone[{}].helix_angle", k), "deg", kAngleReach,
-                             [k](P& g) -> double& { return g.zones[k].helix_angle_rad; });
-    (k > 0 && alike ? out.follow : out.free).push_back(within(std::move(helix), -60, 60));
-  }
-  if (alike) {
-    const double sign = p.zones[0].helix_angle_rad * p.zones[1].helix_angle_rad < 0 ? -1 : 1;
-    out.settle = [sign](Gear& gear) {
-      auto& zones = std::get<P>(gear).zones;
-      zones[1].helix_angle_rad = sign * zones[0].helix_angle_rad;
-    };
-  }
-  out.free.push_back(within(
-      number<P>("pressure_angle", "deg", kAngleReach, [](P& g) -> double& { return g.pressure_angle_rad; }), 5, 40));
+  add_helix_angles(p, out);
+  out.free.push_back(pressure_angle<P>());
   out.free.push_back(within(number<P>("thickness_allowance", "mm", kLengthReach * p.module_mm,
                                       [](P& g) -> double& { return g.thickness_allowance_mm; }),
                             -INFINITY, 0));
-  out.free.push_back(seldom(number<P>("module", "mm", 0.1 * p.module_mm, [](P& g) -> double& { return g.module_mm; })));
+  out.free.push_back(seldom(module<P>(p.module_mm)));
   return out;
 }
 
@@ -81,17 +163,10 @@ Numbers numbers_in(const StraightBevelParameters& p, const job::Job& job) {
   out.teeth = p.teeth;
   out.free.push_back(
       within(number<P>("thickness_shift", "", 0.25, [](P& g) -> double& { return g.thickness_shift; }), -0.5, 0.5));
-  out.free.push_back(within(
-      number<P>("pressure_angle", "deg", kAngleReach, [](P& g) -> double& { return g.pressure_angle_rad; }), 5, 40));
-  if (job.positions.contains("gear.pitch_angle"))
-    out.free.push_back(
-        within(seldom(number<P>("pitch_angle", "deg", kAngleReach, [](P& g) -> double& { return g.pitch_angle_rad; })),
-               1, 89));
-  out.free.push_back(
-      within(seldom(number<P>("backlash", "mm", kLengthReach * module, [](P& g) -> double& { return g.backlash_mm; })),
-             0, INFINITY));
-  out.free.push_back(seldom(number<P>("outer_transverse_module", "mm", 0.1 * module,
-                                      [](P& g) -> double& { return g.outer_transverse_module_mm; })));
+  out.free.push_back(pressure_angle<P>());
+  if (job.positions.contains("gear.pitch_angle")) out.free.push_back(within(seldom(pitch_angle<P>()), 1, 89));
+  out.free.push_back(seldom(backlash<P>(module)));
+  out.free.push_back(seldom(outer_transverse_module<P>(module)));
   return out;
 }
 
@@ -167,70 +242,23 @@ Numbers numbers_in(const SpiralBevelParameters& p, const job::Job&) {
   return out;
 }
 
-template <typename P>
-concept HasNumbers = requires(const P& p, const job::Job& job) {
-  numbers_in(p, job);
-};
-
-Expected<Spaces, Refusal> plain_spaces(const CylindricalParameters& p) {
-  Spaces out;
-  for (const auto& zone : p.zones)
-    out.push_back(std::make_shared<const cylindrical::InvoluteSpace>(cylindrical::InvoluteKernel<double>(p, zone)));
-  return out;
-}
-Expected<Spaces, Refusal> plain_spaces(const StraightBevelParameters& p) {
-  return Spaces{std::make_shared<const straight_bevel::CrownSpace>(straight_bevel::CrownKernel<double>(p))};
-}
-Expected<Spaces, Refusal> plain_spaces(const SpiralBevelParameters& p) {
-  auto made = spiral_bevel::set_up(p);
-  if (auto* refusal = made.refused()) return std::move(*refusal);
-  return Spaces{std::make_shared<const spiral_bevel::CutterSpace>(std::move(made.value().kernel))};
-}
-
-/// With its modifications a gear must be whole.
-template <typename Made>
-Expected<std::shared_ptr<const tooth_space::ToothedPart>, Refusal> whole(const Made& made) {
-  if (const auto* refusals = made.refused()) return refusals->front();
-  return part_of(*made);
-}
-auto whole_gear(const CylindricalParameters& p) { return whole(cylindrical::CylindricalGear::make(p)); }
-auto whole_gear(const StraightBevelParameters& p) { return whole(straight_bevel::StraightBevelGear::make(p)); }
-auto whole_gear(const SpiralBevelParameters& p) { return whole(spiral_bevel::SpiralBevelGear::make(p)); }
-
-template <typename P>
-Expected<Spaces, Refusal> modified_spaces(const P& p, const std::vector<modification::Modification>& modifications) {
-  auto plain = whole_gear(p);
-  if (auto* refusal = plain.refused()) return std::move(*refusal);
-  auto part = tooth_space::modified_part(std::move(plain).value(), modifications);
-  if (auto* refusal = part.refused()) return std::move(*refusal);
-  Spaces out;
-  for (int zone = 0; zone < part.value()->zones(); ++zone) out.emplace_back(part.value(), &part.value()->space(zone));
-  return out;
-}
-
 }  // namespace
 
 Result<Numbers> numbers_of(const job::Job& job) {
+  if (job.flank_grid())
+    return fail_at(
+        job.where("gear.type"),
+        "type = \"{}\" is not fitted, it has no numbers but its points: `toothpath new --points` makes one of "
+        "any points",
+        job.gear_type());
+  if (job.bevel_gear())
+    if (const auto mill = job::form_mill(job); !mill) return mill.error();
   return std::visit(
-      [&](const auto& gear) -> Result<Numbers> {
-        if constexpr (HasNumbers<std::remove_cvref_t<decltype(gear)>>) return numbers_in(gear, job);
-        else
-          return fail_at(job.where("gear.type"),
-                         "type = \"{}\" is not fitted: cylindrical_gear, straight_bevel_gear and spiral_bevel_gear "
-                         "are; `toothpath new --points` makes a flank_grid of any points",
-                         job.gear_type());
+      [&](const auto& gear) -> Numbers {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(gear)>, flank_grid::FlankGridParameters>) return {};
+        else return numbers_in(gear, job);
       },
       job.gear);
-}
-
-Expected<Spaces, Refusal> spaces_of(const Gear& gear, const job::Job& like) {
-  return std::visit(
-      [&](const auto& p) -> Expected<Spaces, Refusal> {
-        if constexpr (HasNumbers<std::remove_cvref_t<decltype(p)>>)
-          return like.modifications.empty() ? plain_spaces(p) : modified_spaces(p, like.modifications);
-        else return Refusal{"type", fail("is not fitted")};
-      },
-      gear);
 }
 
 }  // namespace toothpath::fit

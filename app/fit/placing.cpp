@@ -19,57 +19,92 @@ constexpr std::size_t kTries = 3;            // of them, the nearest ones
 constexpr int kTurns = 720;                  // tried over a pitch
 constexpr std::size_t kTurnedPoints = 2000;  // by which a turn is judged
 constexpr double kBelow = 0.02;              // of the flank's height: so far beyond its end a point still counts,
+constexpr double kCorner = 0.02;             // and so near a fillet that cuts it away it counts no more,
 constexpr double kAbove = 0.25;              // and so far above its tip,
 constexpr double kAhead = 0.25;              // and of the face so far before its ends
 
-/// A flank with places all over it.
-struct Flank {
+/// Places all over a piece, from which searches on it begin.
+struct Starts {
   struct Start {
     double u = 0, v = 0, s = 0, h = 0;
   };
   const ToothSpace* space = nullptr;
   Piece piece = Piece::flank_plus;
-  double end = 0, height = 0;  ///< u where the fillet begins; from there to the tip, where it is highest
-  std::vector<Start> starts = {};
+  std::vector<Start> list = {};
 
-  Flank(const ToothSpace& of, int side) : space(&of), piece(tooth_space::flank_of(side)) {
-    const auto& outline = of.outline();
-    const tooth_space::Borders borders = of.borders(piece);
-    end = std::isfinite(borders.to) && side > 0 ? borders.to : borders.from;
-    std::optional<tooth_space::EdgePlace> tip;
-    for (int k = 0; k < kStations; ++k) {
-      const double s = outline.s_from + (outline.s_to - outline.s_from) * k / (kStations - 1);
-      const auto here = of.tip_edge(side, s, tip);
-      if (!here) continue;
-      tip = here;
-      const double here_up = here->u - end;
-      if (std::abs(here_up) > std::abs(height)) height = here_up;
-      for (int n = 0; n < kHeights; ++n) {
-        const double u = end + here_up * n / (kHeights - 1);
-        const auto v = tooth_space::v_at(of, piece, u, s);
-        const auto at = v ? of.at(piece, u, *v) : std::nullopt;
-        if (at) starts.push_back({u, *v, outline.chart.along(at->p), outline.chart.up(at->p)});
-      }
-    }
-  }
-
-  /// The place with the s and h of a point.
-  [[nodiscard]] std::optional<tooth_space::PiecePlace> beside(const Vec3& p) const {
+  /// h there; nothing where the piece has no place.
+  std::optional<double> add(double u, double s) {
     const auto& chart = space->outline().chart;
-    const double s = chart.along(p), h = chart.up(p), face = space->outline().s_to - space->outline().s_from;
-    if (s < space->outline().s_from - kAhead * face || s > space->outline().s_to + kAhead * face) return {};
+    const auto v = tooth_space::v_at(*space, piece, u, s);
+    const auto at = v ? space->at(piece, u, *v) : std::nullopt;
+    if (!at) return {};
+    list.push_back({u, *v, chart.along(at->p), chart.up(at->p)});
+    return list.back().h;
+  }
+  [[nodiscard]] std::optional<tooth_space::PiecePlace> search(double s, double h) const {
     const auto far = [&](const Start& a) { return (a.s - s) * (a.s - s) + (a.h - h) * (a.h - h); };
     std::array<const Start*, kTries> near{};
-    for (const Start& start : starts) {
+    for (const Start& start : list) {
       const Start* candidate = &start;
       for (const Start*& slot : near)
         if (slot == nullptr || far(*candidate) < far(*slot)) std::swap(slot, candidate);
     }
     for (const Start* start : near)
       if (start != nullptr)
-        if (auto found = tooth_space::search_place(*space, piece, s, h, {start->u, start->v}))
-          return (found->u - end) / height < 1 + kAbove ? found : std::nullopt;
+        if (auto found = tooth_space::search_place(*space, piece, s, h, {start->u, start->v})) return found;
     return {};
+  }
+};
+
+/// A flank and the fillet that follows it.
+struct Flank {
+  const ToothSpace* space = nullptr;
+  int side = 1;
+  double end = 0, height = 0;  ///< u where the fillet begins; from there to the tip, where it is highest
+  double tall = 0;             ///< the same in mm
+  Starts flank, fillet;
+  bool undercut = false;  ///< somewhere the fillet stands higher than where the flank should end
+
+  Flank(const ToothSpace& of, int on)
+      : space(&of), side(on), flank{&of, tooth_space::flank_of(on)}, fillet{&of, tooth_space::fillet_of(on)} {
+    const auto& outline = of.outline();
+    const tooth_space::Borders borders = of.borders(flank.piece), below = of.borders(fillet.piece);
+    end = std::isfinite(borders.to) && side > 0 ? borders.to : borders.from;
+    const double top = side > 0 ? below.from : below.to, root = side > 0 ? below.to : below.from;
+    std::optional<tooth_space::EdgePlace> tip;
+    for (int k = 0; k < kStations; ++k) {
+      const double s = outline.s_from + (outline.s_to - outline.s_from) * k / (kStations - 1);
+      std::optional<double> flank_end;
+      if (const auto here = of.tip_edge(side, s, tip)) {
+        tip = here;
+        const double here_up = here->u - end;
+        if (std::abs(here_up) > std::abs(height)) height = here_up;
+        for (int n = 0; n < kHeights; ++n) {
+          const auto h = flank.add(end + here_up * n / (kHeights - 1), s);
+          if (n == 0) flank_end = h;
+          if (h && flank_end) tall = std::max(tall, *h - *flank_end);
+        }
+      }
+      for (int n = 0; n < kHeights; ++n)
+        if (const auto h = fillet.add(top + (root - top) * n / (kHeights - 1), s); h && n > 0)
+          undercut = undercut || !flank_end || *h > *flank_end;
+    }
+  }
+
+  /// The place with the s and h of a point.
+  [[nodiscard]] std::optional<tooth_space::PiecePlace> beside(const Vec3& p) const {
+    const auto& outline = space->outline();
+    const double s = outline.chart.along(p), face = outline.s_to - outline.s_from;
+    if (s < outline.s_from - kAhead * face || s > outline.s_to + kAhead * face) return {};
+    const auto found = flank.search(s, outline.chart.up(p));
+    return found && (found->u - end) / height < 1 + kAbove ? found : std::nullopt;
+  }
+  /// Does the fillet take away the flank at this place, nearly, or stand where it has none?
+  [[nodiscard]] bool cut_away(const Vec3& p, const std::optional<tooth_space::PiecePlace>& on_flank) const {
+    const auto& chart = space->outline().chart;
+    const auto in_fillet = undercut ? fillet.search(chart.along(p), chart.up(p)) : std::nullopt;
+    if (!in_fillet || !space->borders(fillet.piece).hold(in_fillet->u, 0)) return false;
+    return !on_flank || side * radius(p) * wrapped(azimuth(in_fillet->at.p) - azimuth(on_flank->at.p)) < kCorner * tall;
   }
   [[nodiscard]] bool holds(double u) const { return (u - end) / height > -kBelow; }
 };
@@ -146,7 +181,9 @@ Placing placed_on(const Spaces& spaces, const job::LoosePoints& points, const Po
       if (const int side = known_side(point); side != 0 && side != (k == 0 ? 1 : -1)) continue;
       const Flank& flank = flanks[std::size_t(candidate.zone)][k];
       const auto at = flank.beside(p);
-      if (!at) continue;
+      const bool cut = flank.cut_away(p, at);
+      below = below || cut;
+      if (!at || cut) continue;
       const bool on = flank.holds(at->u);
       below = below || !on;
       found = found || on;

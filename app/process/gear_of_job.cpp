@@ -2,10 +2,8 @@
 
 #include <filesystem>
 
-#include "cam/finger/milling.h"
-#include "cam/tool/cutters.h"
+#include "app/job/form_mill.h"
 #include "geometry/base/angle.h"
-#include "geometry/bevel_gear/finger_cutter_design.h"
 #include "machines/machine_file.h"
 #include "postproc/bodies/of_machine.h"
 #include "postproc/controls/of_machine.h"
@@ -79,44 +77,21 @@ ValueOrErrors<face_gear::FaceGear> make_face_gear(const job::Job& job) {
   return errors;
 }
 
-namespace {
-
-/// The keys of [gear.mill].
-std::string words_of(const bevel_gear::FingerCutterData& mill) {
-  return fmt::format("module = {:g}, tip_radius = {:g}, rack_depth = {:g}, profile_height = {:g}", mill.module_mm,
-                     mill.tip_radius_mm, mill.rack_depth_mm, mill.profile_height_mm);
-}
-
-}  // namespace
-
 ValueOrErrors<bevel_gear::BevelGear> make_bevel_gear(const job::Job& job) {
   const bevel_gear::BevelGearParameters* parameters = job.bevel_gear();
   if (!parameters)
     return std::vector{
         fail_at(job.where("gear.type"), "type = \"{}\", but a bevel gear is needed here", job.gear_type())};
-  std::optional<std::size_t> tool;
-  for (std::size_t i = job.tools.size(); i-- > 0;)
-    if (tool::serves(job.tools[i], tool::CutterUse::tooth_form)) tool = i;
-  for (const auto& operation : job.operations)
-    if (operation.type == path::OperationType::finger_finishing) tool = static_cast<std::size_t>(operation.tool);
-  if (tool && parameters->mill)
-    return std::vector{fail_at(job.where("gear.mill"),
-                               "[gear.mill] contradicts tool {}: the flanks are those that this finger mill leaves",
-                               job.tools[*tool].number)};
-  if (!tool && !parameters->mill && job.operations.empty())
-    return std::vector{fail_at(job.where("gear"),
-                               "the job lacks a [[tool]] of type \"finger_mill\" or the table [gear.mill]: one of them "
-                               "makes the flanks of this gear; a mill by the rules has {}",
-                               words_of(bevel_gear::finger_cutter_for(*parameters)))};
-  auto made = bevel_gear::BevelGear::make(*parameters, tool               ? finger::finger_cutter_data(job.tools[*tool])
-                                                       : parameters->mill ? *parameters->mill
-                                                                          : bevel_gear::finger_cutter_for(*parameters));
+  const auto mill = job::form_mill(job);
+  if (!mill) return std::vector{mill.error()};
+  auto made = bevel_gear::BevelGear::make(*parameters, mill->data);
   if (auto* gear = made.value_if()) return std::move(*gear);
   std::vector<Diagnostic> errors;
   for (auto& refusal : made.error()) {
     std::string key = "gear." + refusal.key;
     if (refusal.key.starts_with("tool."))
-      key = tool ? fmt::format("tool[{}].{}", *tool, refusal.key.substr(5)) : "gear.mill." + refusal.key.substr(5);
+      key = mill->tool ? fmt::format("tool[{}].{}", *mill->tool, refusal.key.substr(5))
+                       : "gear.mill." + refusal.key.substr(5);
     errors.push_back(located(job, key, std::move(refusal.diagnostic)));
   }
   return errors;

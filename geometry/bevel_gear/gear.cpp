@@ -4,6 +4,7 @@
 #include "geometry/bevel_gear/limits.h"
 #include "geometry/bevel_gear/modified_walls.h"
 #include "geometry/bevel_gear/pass.h"
+#include "geometry/bevel_gear/walls.h"
 
 namespace toothpath::bevel_gear {
 
@@ -85,27 +86,22 @@ constexpr int kPathLooks = 256;
 
 class BevelGearBuilder {
  public:
+  using Step = void (BevelGearBuilder::*)();
+
   BevelGearBuilder(const BevelGearParameters& p, const FingerCutterData& c) {
     gear_.parameters_ = p;
     gear_.cutter_ = c;
   }
 
-  Expected<BevelGear, std::vector<Refusal>> build() {
+  /// @param judged  else the walls alone are made, and limits that they can break are not looked at
+  Expected<BevelGear, std::vector<Refusal>> build(bool judged) {
+    judged_ = judged;
     check_bevel_ranges(gear_.parameters_, gear_.cutter_, refusals_);
-    if (!refusals_.empty()) return std::move(refusals_);
-    blank();
-    if (!refusals_.empty()) return std::move(refusals_);
-    modifications();
-    if (!refusals_.empty()) return std::move(refusals_);
-    profile();
-    if (!refusals_.empty()) return std::move(refusals_);
-    halves();
-    if (!refusals_.empty()) return std::move(refusals_);
-    passes();
-    if (!refusals_.empty()) return std::move(refusals_);
-    regularity();
-    if (!refusals_.empty()) return std::move(refusals_);
-    top_land();
+    for (const Step step : {&BevelGearBuilder::blank, &BevelGearBuilder::modifications, &BevelGearBuilder::profile,
+                            &BevelGearBuilder::halves, &BevelGearBuilder::passes})
+      if (refusals_.empty()) (this->*step)();
+    for (const Step step : {&BevelGearBuilder::regularity, &BevelGearBuilder::top_land})
+      if (judged && refusals_.empty()) (this->*step)();
     if (!refusals_.empty()) return std::move(refusals_);
     return std::move(gear_);
   }
@@ -163,7 +159,7 @@ class BevelGearBuilder {
     auto& g = gear_;
     cutter_ = g.profile_of(g.cutter_);
     if (auto r = refused_profile(cutter_)) return refusals_.push_back(std::move(*r));
-    check_bevel_cutter(g, cutter_, g.limits_, refusals_, g.warnings_);
+    if (judged_) check_bevel_cutter(g, cutter_, g.limits_, refusals_, g.warnings_);
   }
 
   /// What the walls leave of a tooth's tip at the small end; the equivalent gear, which refused pointed teeth ahead of
@@ -241,9 +237,24 @@ class BevelGearBuilder {
       return;
     }
     g.corner_ = *X;
+    if (judged_) room_for_corner();
+    const double w = p.relief_half_width_mm;
+    const double room = std::min(g.R_ref_ - g.R_i_, g.R_e_ - g.R_ref_);
+    if (!(w < room))
+      refuse("relief_half_width", "relief_half_width = {:.4f} leaves no face in one half; it must be below {:.4f}", w,
+             room);
+    g.halves_[0].ell_to = g.R_ref_ - w;
+    g.halves_[1].ell_from = g.R_ref_ + w;
+  }
+
+  /// Halves and relief groove wide enough for the fillet of the corner.
+  void room_for_corner() {
+    auto& g = gear_;
+    const BevelCorner& X = g.corner_;
+    const double h_a = g.parameters_.addendum_mm;
     // rho sin(gamma) at the tip of the larger fillet of the two halves, measured from the crossing.
-    const double reach = std::max(contact_reach(g.halves_[0].wall(sigma), X->beta_inner, p.addendum_mm),
-                                  contact_reach(g.halves_[1].wall(sigma), X->beta_outer, p.addendum_mm));
+    const double reach = std::max(contact_reach(g.halves_[0].wall(X.sigma), X.beta_inner, h_a),
+                                  contact_reach(g.halves_[1].wall(X.sigma), X.beta_outer, h_a));
     g.limits_.fillet_reach_mm = reach;
     const double least = 2 * reach, lo = g.R_i_ + least, hi = g.R_e_ - least;
     if (lo > hi)
@@ -256,16 +267,9 @@ class BevelGearBuilder {
              "apex_cone_distance = {:.4f} leaves a half narrower than {:.4f}, twice the reach of the corner fillet; it "
              "must lie between {:.4f} and {:.4f}",
              g.R_ref_, least, lo, hi);
-    const double w = p.relief_half_width_mm;
-    if (w < reach)
+    if (const double w = g.parameters_.relief_half_width_mm; w < reach)
       refuse("relief_half_width",
              "relief_half_width = {:.4f} is below {:.4f}, the reach of the corner fillet at the tip", w, reach);
-    const double room = std::min(g.R_ref_ - g.R_i_, g.R_e_ - g.R_ref_);
-    if (!(w < room))
-      refuse("relief_half_width", "relief_half_width = {:.4f} leaves no face in one half; it must be below {:.4f}", w,
-             room);
-    g.halves_[0].ell_to = g.R_ref_ - w;
-    g.halves_[1].ell_from = g.R_ref_ + w;
   }
 
   /// Smallest F of a pass. On the equidistant F - 1 is monotone: it is smallest at the large end for eps = +1, at the
@@ -322,6 +326,7 @@ class BevelGearBuilder {
     }
     g.limits_.cusp_speed_ratio = least_F_;
     end_before_the_trace();
+    if (!judged_) return;
     if (!(least_F_ > 0.05))
       refuse("face_width",
              "face_width = {:.4f}: the cutter centre path has a cusp inside the face (speed ratio {:.4f}, must exceed "
@@ -379,12 +384,18 @@ class BevelGearBuilder {
   BevelGear gear_;
   FingerProfile<double> cutter_;
   std::vector<Refusal> refusals_;
+  bool judged_ = true;
   double least_F_ = std::numeric_limits<double>::infinity();
 };
 
 Expected<BevelGear, std::vector<Refusal>> BevelGear::make(const BevelGearParameters& parameters,
                                                           const FingerCutterData& cutter) {
-  return BevelGearBuilder(parameters, cutter).build();
+  return BevelGearBuilder(parameters, cutter).build(true);
+}
+
+Expected<BevelGear, std::vector<Refusal>> walls_of(const BevelGearParameters& parameters,
+                                                   const FingerCutterData& cutter) {
+  return BevelGearBuilder(parameters, cutter).build(false);
 }
 
 }  // namespace toothpath::bevel_gear

@@ -8,6 +8,7 @@
 #include "geometry/base/refusals.h"
 #include "geometry/face_gear/flank_field.h"
 #include "geometry/face_gear/inverse.h"
+#include "geometry/face_gear/reference_radius.h"
 #include "geometry/face_gear/space_sheet.h"
 #include "geometry/face_gear/swept_solid.h"
 
@@ -282,9 +283,7 @@ Expected<FaceGear, std::vector<Refusal>> FaceGear::make(const FaceGearParameters
 
   FaceGear gear;
   gear.parameters_ = parameters;
-  if (!gear.parameters_.reference_radius_mm)  // one L0 for all rings, else they would be out of phase
-    gear.parameters_.reference_radius_mm =
-        make_surface<double>(parameters, parameters.zones.front().helix_angle_rad).L_p;
+  gear.parameters_.reference_radius_mm = reference_radius_of(parameters);
   for (const auto& zone : gear.parameters_.zones) {
     const auto surface = make_surface<double>(gear.parameters_, zone.helix_angle_rad);
     gear.rings_.push_back({zone, surface, zone_limits(surface, parameters.module_mm, parameters.least_land_mm), nullptr,

@@ -13,7 +13,10 @@
 #include "app/fit/job_text.h"
 #include "app/job/file.h"
 #include "geometry/base/angle.h"
+#include "geometry/face_gear/space_sheet.h"
+#include "geometry/face_gear/swept_solid.h"
 #include "geometry/inspection/grid.h"
+#include "geometry/tooth_space/limits.h"
 #include "tests/app/program.h"
 #include "tests/geometry/spiral_bevel/samples.h"
 #include "tests/support/files.h"
@@ -210,6 +213,188 @@ TEST(Fit, TheWheelOfOneCutComesBack) {
   for (const char* key : {"cut[0].blade_pressure_angle[0]", "cut[0].blade_point_radius[1]", "cut[0].radial_distance",
                           "cut[0].ratio_of_roll", "cut[0].work_offset"})
     EXPECT_NEAR(row(*fitted, key).value, number_of(truth, *fitted, key), 1e-6) << key;
+}
+
+struct Changed {
+  const char *from, *to;
+};
+std::string with(std::string text, const std::vector<Changed>& changes) {
+  for (const auto& [from, to] : changes) text = replaced(std::move(text), from, to);
+  return text;
+}
+
+/// A gear whose numbers come back from its own points, exact ones and scattered ones.
+struct Returning {
+  const char* name;
+  const char* sample;
+  std::vector<Changed> truth, start;  ///< changes of the sample, and of the truth
+  std::vector<const char*> determined;
+  std::vector<const char*> held = {};
+  bool axial = false;
+};
+void PrintTo(const Returning& r, std::ostream* out) { *out << r.name; }
+
+const Returning kReturning[] = {
+    // Offset, 86 deg between its shafts, helical: no symmetry of its flanks is left.
+    {"face",
+     "offset_milled.toml",
+     {{"shaft_angle = 90.0", "shaft_angle = 86.0"},
+      {"helix_angle = 0.0", "helix_angle = 8.0"},
+      {"shaper_teeth = 25", "shaper_teeth = 25\nbacklash = 0.1"}},
+     {{"shaft_angle = 86.0", "shaft_angle = 86.02"},
+      {"helix_angle = 8.0", "helix_angle = 8.03"},
+      {"offset = 15.0", "offset = 14.97"},
+      {"pressure_angle = 20.0", "pressure_angle = 20.05"},
+      {"backlash = 0.1", "backlash = 0.14"}},
+     {"backlash", "zone[0].helix_angle", "pressure_angle", "shaft_angle", "offset"},
+     {},
+     true},
+    {"double_helical_face",
+     "dhfg_ball.toml",
+     {{"offset = 0.0", "offset = 0.0\nbacklash = 0.05"}},
+     {{"reference_radius = 118.0", "reference_radius = 117.98"},
+      {"offset = 0.0\nbacklash = 0.05", "offset = 0.03\nbacklash = 0.02"},
+      {"helix_angle = -30.0", "helix_angle = -30.04"},
+      {"helix_angle = 30.0", "helix_angle = 30.04"},
+      {"pressure_angle = 20.0", "pressure_angle = 20.1"}},
+     {"backlash", "zone[0].helix_angle", "pressure_angle", "reference_radius", "shaft_angle", "offset"}},
+    {"herringbone_bevel",
+     "bevel_wheel.toml",
+     {{"backlash = 0.0", "backlash = 0.06"}},
+     {{"backlash = 0.06", "backlash = 0.0"},
+      {"pressure_angle = 20.0", "pressure_angle = 20.1"},
+      {"outer_spiral_angle = 30.0", "outer_spiral_angle = 30.1"},
+      {"apex_cone_distance = 104.0", "apex_cone_distance = 104.05"}},
+     {"backlash", "pressure_angle", "outer_spiral_angle", "apex_cone_distance"}},
+    {"single_bevel",
+     "bevel_ball.toml",
+     {},
+     {{"backlash = 0.1", "backlash = 0.03"},
+      {"pressure_angle = 20.0", "pressure_angle = 19.9"},
+      {"outer_spiral_angle = 30.0", "outer_spiral_angle = 29.9"}},
+     {"backlash", "pressure_angle", "outer_spiral_angle"}},
+};
+
+class FitReturns : public testing::TestWithParam<Returning> {};
+
+TEST_P(FitReturns, FromItsOwnPoints) {
+  const Returning& gear = GetParam();
+  const std::string text = with(sample(gear.sample), gear.truth), start_text = with(text, gear.start);
+  const job::Job truth = job_of(text), start = job_of(start_text);
+  for (const bool normals : {true, false}) {
+    const auto fitted =
+        fit::fit_gear(start, points_of(truth, {0.3, gear.axial ? 0.4 : 0, 0, normals}), {{}, {}, true, gear.axial, 0});
+    ASSERT_TRUE(fitted) << fitted.error().text();
+    SCOPED_TRACE(told(*fitted));
+    EXPECT_GT(fitted->before.worst_mm, 0.005);
+    EXPECT_LT(fitted->after.worst_mm, 1e-8);
+    EXPECT_EQ(fitted->placing.beside + fitted->placing.below_flanks, 0U);
+    for (const char* key : gear.determined) {
+      EXPECT_EQ(row(*fitted, key).end, fit::End::determined) << key;
+      EXPECT_NEAR(row(*fitted, key).value, number_of(truth, *fitted, key), 1e-6) << key;
+    }
+    if (gear.axial) { EXPECT_NEAR(row(*fitted, "axial_position").value, 0.4, 1e-6); }
+    const auto changed = fit::job_with_numbers(start, start_text, *fitted, start.file);
+    ASSERT_TRUE(changed) << to_text(changed.error());
+    EXPECT_NEAR(number_of(job_of(*changed), *fitted, "pressure_angle"), 20, 1e-6);
+  }
+}
+
+TEST_P(FitReturns, WithinItsDeviationsFromPointsThatScatter) {
+  const Returning& gear = GetParam();
+  const job::Job truth = job_of(with(sample(gear.sample), gear.truth));
+  Made made{-0.2, 0, 0.001};
+  made.rows = 9;
+  made.columns = 17;
+  const auto fitted = fit::fit_gear(truth, points_of(truth, made), {});
+  ASSERT_TRUE(fitted) << fitted.error().text();
+  SCOPED_TRACE(told(*fitted));
+  EXPECT_NEAR(fitted->after.rms_mm, 0.001, 0.0001);
+  for (const fit::Row& r : fitted->rows) {
+    if (r.end != fit::End::determined || r.key == "rotation") continue;
+    EXPECT_LT(std::abs(r.value - number_of(truth, *fitted, r.key)), 4 * r.deviation) << r.key;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FitReturns, testing::ValuesIn(kReturning),
+                         [](const testing::TestParamInfo<Returning>& s) { return std::string(s.param.name); });
+
+/// Flanks and fillets of the face gear of a job as the solid shaper leaves them: what it cuts away is no place of them.
+struct Shaped {
+  job::LoosePoints points{"points.csv", true, {}};
+  std::size_t of_fillets = 0;
+  int high = 0;  ///< of fillets, higher than where the flank should end
+};
+Shaped shaped_points(const job::Job& job) {
+  constexpr int kStations = 9, kHeights = 8;
+  const auto spaces = fit::spaces_of(job.gear, job);
+  const auto& space = *spaces->front();
+  const auto& surface = dynamic_cast<const face_gear::SpaceSheet&>(space).surface();
+  Shaped out;
+  const auto add = [&](tooth_space::Piece piece, double u, double r) -> std::optional<double> {
+    const auto q = tooth_space::place_at(space, piece, u, r);
+    if (!q || face_gear::swept_clearance(surface, q->p) < -1e-7) return {};
+    out.points.points.push_back({q->p, q->n, {"points.csv", int(out.points.points.size()) + 2, 1}, 0});
+    return q->p.z();
+  };
+  const auto& outline = space.outline();
+  for (const int side : {1, -1})
+    for (int k = 0; k < kStations; ++k) {
+      const double r = outline.s_from + (outline.s_to - outline.s_from) * (k + 0.5) / kStations;
+      const auto tip = space.tip_edge(side, r);
+      const auto end = tooth_space::place_at(space, tooth_space::flank_of(side), surface.shaper.theta_t, r);
+      for (int n = 1; tip && n < kHeights; ++n)
+        add(tooth_space::flank_of(side), surface.shaper.theta_t + (tip->u - surface.shaper.theta_t) * n / kHeights, r);
+      for (int n = 1; n < kHeights; ++n) {
+        const auto z = add(tooth_space::fillet_of(side),
+                           surface.shaper.A_t + (surface.shaper.A_e - surface.shaper.A_t) * n / kHeights, r);
+        if (!z) continue;
+        ++out.of_fillets;
+        if (!end || *z > end->p.z()) ++out.high;
+      }
+    }
+  return out;
+}
+
+TEST(Fit, PointsOfAnUndercutAreNoFlank) {
+  const std::string text = with(sample("offset_milled.toml"), {{"inner_radius = 130.5", "inner_radius = 118.0"},
+                                                               {"offset = 15.0", "offset = 15.0\nbacklash = 0.1"}});
+  const job::Job truth = job_of(text),
+                 start = job_of(with(text, {{"backlash = 0.1", "backlash = 0.13"},
+                                            {"offset = 15.0", "offset = 14.98"},
+                                            {"pressure_angle = 20.0", "pressure_angle = 20.03"}}));
+  const Shaped shaped = shaped_points(truth);
+  EXPECT_GT(shaped.high, 3);
+  const auto fitted = fit::fit_gear(start, shaped.points, {});
+  ASSERT_TRUE(fitted) << fitted.error().text();
+  SCOPED_TRACE(told(*fitted));
+  EXPECT_GE(fitted->placing.below_flanks, shaped.of_fillets);
+  EXPECT_GT(fitted->placing.points.size(), 60U);
+  EXPECT_EQ(fitted->placing.beside, 0U);
+  EXPECT_LT(fitted->after.worst_mm, 1e-8);
+  for (const char* key : {"backlash", "pressure_angle", "offset", "shaft_angle"})
+    EXPECT_NEAR(row(*fitted, key).value, number_of(truth, *fitted, key), 1e-6) << key;
+}
+
+TEST(Fit, PointsOfAnotherFaceOrBevelGearAreRefused) {
+  const job::Job face = job_of(sample("offset_milled.toml")), bevel = job_of(sample("bevel_ball.toml"));
+  const auto refused = [&](const job::Job& job, const job::LoosePoints& p) {
+    const auto fitted = fit::fit_gear(job, p, {});
+    return fitted ? std::string("none") : fitted.error().text();
+  };
+  for (const auto& [job, other] : {std::pair(&face, &bevel), {&bevel, &face}}) {
+    EXPECT_NE(refused(*job, points_of(*other)).find("points.csv:1:1: error: no point lies beside a flank"),
+              std::string::npos);
+    job::LoosePoints few = points_of(*job);
+    few.points.resize(4);
+    EXPECT_NE(refused(*job, few).find("4 points lie on flanks, "), std::string::npos) << refused(*job, few);
+    // Two parts of three beyond the large end: a flank that is not there.
+    job::LoosePoints beyond = points_of(*job);
+    for (std::size_t i = 0; i < beyond.points.size(); ++i)
+      if (i % 3 != 0) beyond.points[i].p *= 1.6;
+    EXPECT_NE(refused(*job, beyond).find("of 90 points lie where the gear of "), std::string::npos)
+        << refused(*job, beyond);
+  }
 }
 
 TEST(Fit, WhatIsNoneIsRefused) {
