@@ -1,5 +1,6 @@
 // Links while TCP stays on: straight for the tip, turns with the tip standing still, all above the clearance body as it
-// lies on the table. The tool stands above its tip there, because its axis points up.
+// lies on the table, where the tool stands above its tip, because its axis points up; or beside it, where the tool lies
+// farther out than its tip, because its axis points away from the gear axis.
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +12,11 @@ namespace toothpath::joints {
 namespace {
 constexpr double kLeastUp =
     0.1;  // of the tool axis, seen from the table: a flatter tool would hardly rise along itself
+constexpr double kUpright = 1 - 1e-9;  // of the gear axis: links go beside the part
+constexpr double kLeastOut = 0.3;      // of the tool axis, square to the gear axis: a steeper tool hardly goes sideways
+constexpr double kLeansIn = 1e-6;      // of the tool axis towards the gear axis, while it turns beside the part
+constexpr double kBesideSlack = 0.01;  // mm: of places outside the part, which words round
+constexpr int kWider = 30;             // trials of a way across that keeps clear
 
 /// Words of the rotaries where they stand at their zeros.
 RotaryPair at_zero(const machines::KinematicChain& chain) {
@@ -32,8 +38,9 @@ RotaryPair ToothBuilder::zero_rotaries() const {
   return zero.front();
 }
 
-/// Z at its top, rotaries at zero, the tip over the gear axis, TCP on in the block that lowers Z.
-void ToothBuilder::start_at_zero() {
+/// Z at its top, rotaries at zero, the tip over the gear axis or over a place beside the part, TCP on in the block that
+/// lowers Z.
+void ToothBuilder::start_at_zero(const Vec3& over) {
   const double top = link_height();
   if (top > retract_height() + 1e-9) return too_low(top);
   last_.words[2] = words_.joint_word(program_.retract_z_mm, 2, last_);
@@ -42,8 +49,8 @@ void ToothBuilder::start_at_zero() {
   const double swept = tip_height_for_turn(zero);
   if (swept > retract_height() + 1e-9) return too_low(swept);
   const Vec3 up = job_.gear.rotation.col(2);
-  Vec3 start = job_.gear.origin;
-  if (std::abs(up.z()) > 0.5) start += up * ((top - start.z()) / up.z());
+  Vec3 start = over;
+  if (!beside_ && std::abs(up.z()) > 0.5) start += up * ((top - start.z()) / up.z());
   start.z() = top;
   const machines::Joints j = chain_.linear_for(start, zero, words_.length());
   AxisBlock b = last_;
@@ -61,16 +68,119 @@ void ToothBuilder::start_at_zero() {
   tcp_ = true;
 }
 
-/// Links with TCP go over the part: a tool that comes in from the side does not.
+/// Of a tool that stands flatter somewhere no link goes over the part: they go beside it, where the gear stands
+/// upright.
+bool ToothBuilder::comes_from_the_side(const FollowedPath& path, const Mat3& rotation) const {
+  if (std::abs(job_.gear.rotation.col(2).z()) < kUpright) return false;
+  return std::any_of(path.path().records.begin(), path.path().records.end(),
+                     [&](const path::ClRecord& r) { return (rotation * r.axis).z() < kLeastUp; });
+}
+
 bool ToothBuilder::lies_down(const Vec3& axis) {
   if (axis.z() >= kLeastUp) return false;
   error_ = fail(
       "operation {} record {} (tooth {}): the tool axis rises by {:.3f} only, seen from the table, and links with TCP "
-      "need {:.1f} at least; where the tool comes in from the side write tcp = \"none\" in a copy of the machine file "
-      "beside the job, and its name under [machine]: the program then carries the axes of the machine, and its links "
-      "need no such axis",
+      "over a part that leans need {:.1f} at least; set the gear axis upright on the table, or write tcp = \"none\" in "
+      "a copy of the machine file beside the job, and its name under [machine]",
       operation_->operation, record_, tooth_, axis.z(), kLeastUp);
   return true;
+}
+
+double ToothBuilder::from_gear_axis(const Vec3& p) const {
+  return (p - job_.gear.origin).cross(job_.gear.rotation.col(2)).norm();
+}
+
+double ToothBuilder::beside_radius() const { return job_.body.radius_mm + job_.options.clearance_margin_mm; }
+
+/// The place on the way out along the tool axis at a distance from the gear axis, or where the tip stands if that is
+/// farther out.
+std::optional<Vec3> ToothBuilder::beside(const Vec3& tip, const Vec3& axis, double radius) {
+  const Vec3 up = job_.gear.rotation.col(2), from = tip - job_.gear.origin;
+  const Vec3 p = from - from.dot(up) * up, a = axis - axis.dot(up) * up;
+  const double aa = a.squaredNorm(), pa = p.dot(a), lack = radius * radius - p.squaredNorm();
+  if (!(aa >= kLeastOut * kLeastOut)) {
+    error_ = fail(
+        "operation {} record {} (tooth {}): the tool axis leaves the gear axis sideways by {:.3f} only, and others of "
+        "this tooth come in from the side: links with TCP then go out beside the part and need {:.1f} at least; cut "
+        "the steep and the flat directions by operations of their own",
+        operation_->operation, record_, tooth_, std::sqrt(aa), kLeastOut);
+    return {};
+  }
+  if (lack <= 0 && pa >= 0) return tip;
+  const double out = (-pa + std::sqrt(std::max(0.0, pa * pa + aa * lack))) / aa;
+  return Vec3(tip + std::max(0.0, out) * axis);
+}
+
+/// The tip stands still beside the part, while the tool never leans over it.
+void ToothBuilder::push_turn_beside(const RotaryPair& rotaries) {
+  constexpr int kLooks = 90;
+  const RotaryPair from = words_.joints(last_).rotary_rad;
+  const Vec3 up = job_.gear.rotation.col(2), tip = words_.tip(last_), at = tip - job_.gear.origin,
+             outwards = (at - at.dot(up) * up).normalized();
+  for (int k = 0; k <= kLooks; ++k) {
+    const double t = double(k) / kLooks;
+    machines::Joints j;
+    for (std::size_t n = 0; n < 2; ++n) j.rotary_rad[n] = from[n] + t * (rotaries[n] - from[n]);
+    const double leans = chain_.forward(j, words_.length()).axis.dot(outwards);
+    if (leans > -kLeansIn) continue;
+    error_ = fail(
+        "operation {} record {} (tooth {}): while the rotaries turn beside the part the tool leans over it, its axis "
+        "by {:.3f} towards the gear axis, limit {:g}: another tool direction, or tcp = \"none\" in a copy of the "
+        "machine file beside the job, and its name under [machine]",
+        operation_->operation, record_, tooth_, -leans, kLeansIn);
+    return;
+  }
+  push_turn(rotaries);
+}
+
+/// Out along the tool axis to beside the part, turn there, across, and in along the tool axis. The first link comes
+/// from above: of an upright tool the rotary that turns the gear about its axis goes first, then the tool swings out.
+void ToothBuilder::link_beside(const machines::TablePose& target, const RotaryPair& rotaries) {
+  const bool first = last_.kind == BlockKind::tcp_on;
+  const Vec3 now = words_.tip(last_), axis = chain_.forward(words_.joints(last_), words_.length()).axis;
+  std::optional<Vec3> out = now, in;
+  double radius = beside_radius();
+  for (int k = 0; k < kWider; ++k) {
+    if (!first) out = beside(now, axis, radius);
+    in = beside(target.tip_mm, target.axis, radius);
+    if (!out || !in) return;
+    // The way across, seen along the gear axis.
+    const Vec3 way = *in - *out, up = job_.gear.rotation.col(2), flat = way - way.dot(up) * up,
+               from = *out - job_.gear.origin;
+    const double length2 = flat.squaredNorm(), t = length2 > 0 ? std::clamp(-from.dot(flat) / length2, 0.0, 1.0) : 0;
+    const double least = from_gear_axis(*out + t * way);
+    if (least >= beside_radius() - kBesideSlack) break;
+    if (k + 1 == kWider || !(least > 0.1 * beside_radius())) {
+      error_ = fail(
+          "operation {} record {} (tooth {}): the way from pass to pass beside the part comes as near as {:.3f} mm to "
+          "the gear axis, limit {:.3f} mm: passes of one tooth must lie on one side of the part",
+          operation_->operation, record_, tooth_, least, beside_radius());
+      return;
+    }
+    radius *= 1.0001 * beside_radius() / least;
+  }
+  if (!first) push_tip(*out);
+  const RotaryPair from = words_.joints(last_).rotary_rad;
+  if (from != rotaries) {
+    if (first) {
+      // Which of the two leaves the tool upright?
+      for (const std::size_t n : {0U, 1U}) {
+        RotaryPair one = from;
+        one[n] = rotaries[n];
+        machines::Joints j;
+        j.rotary_rad = one;
+        if (one == from || !(chain_.forward(j, words_.length()).axis.z() > 1 - 1e-9)) continue;
+        push_turn_beside(one);
+        break;
+      }
+    }
+    if (!error_ && words_.joints(last_).rotary_rad != rotaries) push_turn_beside(rotaries);
+  }
+  if (error_) return;
+  push_tip(*in);
+  push_tip(target.tip_mm);
+  blocks_->back().record = record_;
+  broken_ = true;
 }
 
 void ToothBuilder::tip_link_to(const machines::TablePose& target, const RotaryPair& rotaries) {
@@ -78,6 +188,13 @@ void ToothBuilder::tip_link_to(const machines::TablePose& target, const RotaryPa
   AxisBlock goal = last_;
   words_.set_tip(goal, target.tip_mm, rotaries);
   if (goal.words == last_.words) return;
+  if (beside_) link_beside(target, rotaries);
+  else link_over(target, rotaries);
+}
+
+void ToothBuilder::link_over(const machines::TablePose& target, const RotaryPair& rotaries) {
+  AxisBlock goal = last_;
+  words_.set_tip(goal, target.tip_mm, rotaries);
   if (lies_down(target.axis)) return;
   rise_along_tool();
   if (error_) return;
@@ -106,7 +223,13 @@ void ToothBuilder::rise_along_tool() {
 
 void ToothBuilder::leave_to_top() {
   end_on_angles();
-  rise_along_tool();
+  if (beside_) {
+    const auto out =
+        beside(words_.tip(last_), chain_.forward(words_.joints(last_), words_.length()).axis, beside_radius());
+    if (out) push_tip(*out);
+  } else {
+    rise_along_tool();
+  }
   if (error_) return;
   AxisBlock b;
   const machines::Joints j = words_.joints(last_);

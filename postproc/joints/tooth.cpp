@@ -38,7 +38,14 @@ void ToothBuilder::tooth(const FollowedPath& followed, const RotaryPair& next_st
   };
   const bool stays_in_tcp = this->stays_in_tcp();
   start_of_tooth_ = true;
-  if (stays_in_tcp) start_at_zero();
+  if (stays_in_tcp && !path.records.empty()) {
+    beside_ = comes_from_the_side(followed, rotation);
+    Vec3 over = job_.gear.origin;
+    if (const auto place = beside_ ? beside(pose(0).tip_mm, pose(0).axis, beside_radius()) : std::nullopt)
+      over = *place;
+    if (error_) return;
+    start_at_zero(over);
+  }
   for (std::size_t i = 0; i < path.records.size() && !error_; ++i) {
     record_ = followed.record(i);
     if (path.records[i].kind == path::MoveKind::rapid) {

@@ -4,7 +4,8 @@
 // Without TCP every block is straight in the joints. With TCP the blocks of a cut carry the tip, which the control
 // keeps on its chord; links stay in the joints (TCP is switched off before the first of them), except where the control
 // can switch TCP on at rotary zero only: there TCP stays on for the whole tooth, and links rise along the tool axis
-// above the clearance body, turn there with the tip standing still, cross, and go down along the tool axis.
+// above the clearance body, turn there with the tip standing still, cross, and go down along the tool axis. Where the
+// tool comes in from the side they leave the clearance body sideways, along the tool axis, and stay outside its radius.
 #pragma once
 
 #include <array>
@@ -97,10 +98,18 @@ class ToothBuilder {
   void end_on_angles();
 
   // postproc/joints/tip_links.cpp: with TCP.
-  void start_at_zero();
+  void start_at_zero(const Vec3& over);
   void tip_link_to(const machines::TablePose& target, const RotaryPair& rotaries);
+  void link_over(const machines::TablePose& target, const RotaryPair& rotaries);
+  void link_beside(const machines::TablePose& target, const RotaryPair& rotaries);
   [[nodiscard]] bool lies_down(const Vec3& axis);
   void rise_along_tool();
+  /// The tool comes in from the side somewhere in a tooth: its links go beside the part.
+  [[nodiscard]] bool comes_from_the_side(const FollowedPath& path, const Mat3& rotation) const;
+  [[nodiscard]] double from_gear_axis(const Vec3& p) const;
+  [[nodiscard]] double beside_radius() const;
+  std::optional<Vec3> beside(const Vec3& tip, const Vec3& axis, double radius);
+  void push_turn_beside(const RotaryPair& rotaries);
   void leave_to_top();
   void push_tip(const Vec3& tip);
   void push_turn(const RotaryPair& rotaries);
@@ -137,6 +146,7 @@ class ToothBuilder {
   bool at_retract_ = true, start_of_tooth_ = true, broken_ = true;
   bool positioned_ = false;          // X and Y have been commanded
   bool tcp_ = false;                 // switched on
+  bool beside_ = false;              // links of this tooth go beside the part
   std::optional<double> cone_ball_;  // the step lies in the cone about a pole: ball radius, 0 for other tools
 };
 
