@@ -23,10 +23,12 @@
 #include "app/job/flank_points.h"
 #include "app/job/job.h"
 #include "app/job/loose_points.h"
+#include "app/proposal/gear_limits.h"
 #include "app/proposal/library_shelf.h"
 #include "app/proposal/points_gear.h"
 #include "app/proposal/propose.h"
 #include "app/rexs/gears.h"
+#include "geometry/base/angle.h"
 #include "geometry/base/json_text.h"
 #include "geometry/base/length_unit.h"
 #include "geometry/base/printable.h"
@@ -362,6 +364,50 @@ DoneOrErrors wish_meridians(Wishes& wishes, proposal::PointsOfFile& points, cons
   return Ok{};
 }
 
+constexpr double kSameDistance = 0.005;  // mm: both cone distances of a drawing
+
+/// Transverse, at the large end.
+std::optional<double> module_of(const Wishes& wishes, double outer_cone_distance) {
+  return 2 * outer_cone_distance * std::sin(spiral_bevel::pitch_angle(proposal::drawing_of(wishes))) /
+         wishes.at(Quantity::teeth);
+}
+
+/// What a drawing says of a spiral bevel gear instead of a question: a pitch angle of the shafts, a cone distance of
+/// the module.
+Expected<std::optional<double>, std::vector<Diagnostic>> given_by_drawing(Quantity what,
+                                                                          const std::optional<double>& given,
+                                                                          const Wishes& wishes,
+                                                                          const NewRequest& request) {
+  const auto said = [&](Quantity q) { return request.numbers[static_cast<std::size_t>(q)]; };
+  const auto twice = [&](const char* one, const char* other) {
+    return usage(fmt::format("{} and {} say the same of a gear: give one of the two", one, other));
+  };
+  if (what == Quantity::shaft_angle) {
+    const auto pitch = said(Quantity::pitch_angle);
+    if (!pitch) return given;
+    if (given) return twice("--pitch-angle", "--shaft-angle");
+    const double ratio = wishes.at(Quantity::mate_teeth) / wishes.at(Quantity::teeth);
+    const auto shafts = spiral_bevel::shaft_angle_of(radians(*pitch), ratio);
+    if (!shafts)
+      return std::vector{
+          fail_as(DiagnosticKind::refused_input,
+                  "--pitch-angle = {:g} deg is not below {:.4f} deg: no cone of the mate with {:g} teeth "
+                  "fits it",
+                  *pitch, degrees(std::asin(1 / ratio)), wishes.at(Quantity::mate_teeth))};
+    return std::optional(degrees(*shafts));
+  }
+  const auto outer = said(Quantity::cone_distance), mean = said(Quantity::mean_cone_distance),
+             width = said(Quantity::face_width);
+  if (what != Quantity::module || (!outer && !mean)) return given;
+  if (outer && mean && width && std::abs(*outer - 0.5 * *width - *mean) <= kSameDistance)
+    return module_of(wishes, *outer);
+  if (outer && mean) return twice("--cone-distance", "--mean-cone-distance");
+  if (given) return twice("--module", outer ? "--cone-distance" : "--mean-cone-distance");
+  if (outer) return module_of(wishes, *outer);
+  if (!width) return usage("--face-width is missing: the outer cone distance is --mean-cone-distance and half of it");
+  return module_of(wishes, *mean + 0.5 * *width);
+}
+
 /// Of a spiral bevel gear by a drawing; without a terminal pinions are left-hand and wheels right-hand.
 DoneOrErrors wish_hand(Wishes& wishes, const std::string& given, const Dialog& dialog) {
   const bool pinion = wishes.at(Quantity::teeth) <= wishes.at(Quantity::mate_teeth);
@@ -397,6 +443,7 @@ DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, const Dialo
       if (given) return usage(fmt::format("{} does not belong to --gear {}", question.option, word_of(*wishes.gear)));
       continue;
     }
+    if (proposal::stands_for_another(question.what)) continue;
     if (question.what == Quantity::inner) {
       dialog.tell(limits_of(wishes));
       if (machine.mill)
@@ -405,7 +452,9 @@ DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, const Dialo
     }
     if (question.what == Quantity::fillet_radius)
       if (auto asked = wish_meridians(wishes, *points, request, dialog); asked.refused()) return asked;
-    if (auto asked = wish_number(wishes, question, given, dialog, machine); asked.refused()) return asked;
+    auto said = given_by_drawing(question.what, given, wishes, request);
+    if (auto* errors = said.refused()) return std::move(*errors);
+    if (auto asked = wish_number(wishes, question, said.value(), dialog, machine); asked.refused()) return asked;
   }
   if (wishes.gear == proposal::Gear::spiral_bevel) return wish_hand(wishes, request.hand, dialog);
   if (!by_points) return Ok{};

@@ -7,7 +7,6 @@
 #include "cam/cut/unreached.h"
 #include "cam/plan/first_ball.h"
 #include "geometry/base/angle.h"
-#include "geometry/spiral_bevel/basic_settings.h"
 
 namespace toothpath::proposal {
 namespace {
@@ -116,17 +115,24 @@ straight_bevel::StraightBevelParameters straight_bevel_parameters(const Wishes& 
   return p;
 }
 
-Expected<spiral_bevel::SpiralBevelGear, std::vector<Refusal>> spiral_bevel_gear(const Wishes& wishes) {
-  if (wishes.spiral) return spiral_bevel::SpiralBevelGear::make(*wishes.spiral);
+spiral_bevel::Drawing drawing_of(const Wishes& wishes) {
   spiral_bevel::Drawing drawing;
   drawing.teeth = static_cast<int>(wishes.at(Quantity::teeth));
   drawing.mate_teeth = static_cast<int>(wishes.at(Quantity::mate_teeth));
   drawing.hand = wishes.hand;
+  drawing.shaft_angle_rad = radians(wishes[Quantity::shaft_angle].value_or(90));
   drawing.outer_transverse_module_mm = wishes.at(Quantity::module);
   drawing.spiral_angle_rad = radians(wishes.at(Quantity::spiral));
   drawing.pressure_angle_rad = radians(wishes.at(Quantity::pressure_angle));
   drawing.face_width_mm = wishes.at(Quantity::face_width);
   drawing.cutter_radius_mm = wishes.at(Quantity::cutter_radius);
+  return drawing;
+}
+
+namespace {
+
+/// With the largest rounding of the blades that makes a gear.
+Expected<spiral_bevel::SpiralBevelGear, std::vector<Refusal>> gear_of_drawing(const spiral_bevel::Drawing& drawing) {
   std::vector<Refusal> refused;
   for (const double share : kBevelRoundings) {
     auto settings = spiral_bevel::basic_settings(drawing, rounded(share * drawing.outer_transverse_module_mm));
@@ -139,6 +145,37 @@ Expected<spiral_bevel::SpiralBevelGear, std::vector<Refusal>> spiral_bevel_gear(
     else return made;
   }
   return refused;
+}
+
+/// The least spiral angle above that of the drawing with which its other numbers make a gear, in steps; deg.
+std::optional<double> least_spiral(spiral_bevel::Drawing drawing) {
+  constexpr double kStep = 1, kMost = 45;  // deg
+  for (double angle = std::floor(degrees(drawing.spiral_angle_rad) / kStep) * kStep + kStep; angle <= kMost;
+       angle += kStep) {
+    drawing.spiral_angle_rad = radians(angle);
+    if (!gear_of_drawing(drawing).refused()) return angle;
+  }
+  return {};
+}
+
+}  // namespace
+
+Expected<spiral_bevel::SpiralBevelGear, std::vector<Refusal>> spiral_bevel_gear(const Wishes& wishes) {
+  if (wishes.spiral) return spiral_bevel::SpiralBevelGear::make(*wishes.spiral);
+  const spiral_bevel::Drawing drawing = drawing_of(wishes);
+  auto made = gear_of_drawing(drawing);
+  auto* refusals = made.refused();
+  if (!refusals || refusals->front().key == "shaft_angle") return made;
+  if (const auto least = least_spiral(drawing))
+    return std::vector{Refusal{
+        "spiral_angle",
+        fail("spiral_angle = {:g} deg is below {:g} deg, from where on these numbers make a gear by one cut on a "
+             "machine without tilt; another cutter radius than {:g} mm may allow less. At low spiral angles the "
+             "contact lines run along the tooth, and the roll of the cradle, by which flanks are followed, hardly "
+             "moves on them: settings of a generator's sheet are taken with --rexs. What stops this one: {}",
+             degrees(drawing.spiral_angle_rad), *least, drawing.cutter_radius_mm,
+             refusals->front().diagnostic.message)}};
+  return made;
 }
 
 std::optional<FaceRange> face_range(const Wishes& wishes) {

@@ -9,6 +9,7 @@
 #include "geometry/cylindrical/gear.h"
 #include "geometry/face_gear/gear.h"
 #include "geometry/flank_grid/gear.h"
+#include "geometry/spiral_bevel/basic_settings.h"
 #include "geometry/spiral_bevel/gear.h"
 #include "geometry/straight_bevel/gear.h"
 
@@ -30,8 +31,10 @@ struct FaceRange {
 /// Those of a file, or one zone about z = 0.
 [[nodiscard]] cylindrical::CylindricalParameters cylindrical_parameters(const Wishes& wishes);
 
+/// What a drawing says of a spiral bevel gear, as far as it is known; shafts at 90 deg where nothing is said.
+[[nodiscard]] spiral_bevel::Drawing drawing_of(const Wishes& wishes);
 /// Of the settings of a file, or of a drawing with the largest rounding of the blades that makes a gear. Refused, with
-/// keys of a job: what makes none.
+/// keys of a job: what makes none; of a drawing with the least spiral angle that does.
 [[nodiscard]] Expected<spiral_bevel::SpiralBevelGear, std::vector<Refusal>> spiral_bevel_gear(const Wishes& wishes);
 
 /// Gleason proportions for shafts at 90 deg, the largest rounding up to 0.3 modules that the crown gear's teeth carry.

@@ -167,20 +167,22 @@ std::string cut_text(const spiral_bevel::Cut& cut) {
 
 /// What a proposal took beside the numbers of a drawing.
 std::string assumed_text(const Wishes& wishes) {
+  const double shafts = wishes[Quantity::shaft_angle].value_or(90);
   return fmt::format(
       "\n# Proposed from a drawing, not a sheet of a generator: {:.0f}/{:.0f} teeth, outer transverse module {:g} mm,\n"
       "# spiral angle {:g} deg in the middle of the face, pressure angle {:g} deg, face mill of {:g} mm radius. "
       "Assumed:\n"
-      "# shafts at 90 deg without offset or backlash; Gleason's depths (working depth 1.7 m, clearance 0.188 m, "
+      "# shafts at {:g} deg without offset or backlash; Gleason's depths (working depth 1.7 m, clearance 0.188 m, "
       "addendum\n"
-      "# of the wheel 0.46 m + 0.39 m (z1/z2)^2); duplex taper, at most 1.3 times the standard one (ISO 23509); both "
+      "# of the wheel 0.46 m + 0.39 m {}); duplex taper, at most 1.3 times the standard one (ISO 23509); both "
       "flanks\n"
       "# cut at once by spread blades (completing) on the basic setting of the generator: no offset, tilt or modified "
       "roll.\n"
       "# The mate has the same numbers with its teeth exchanged and the other hand: toothpath contact JOB --mate "
       "OTHER.\n",
       wishes.at(Quantity::teeth), wishes.at(Quantity::mate_teeth), wishes.at(Quantity::module),
-      wishes.at(Quantity::spiral), wishes.at(Quantity::pressure_angle), wishes.at(Quantity::cutter_radius));
+      wishes.at(Quantity::spiral), wishes.at(Quantity::pressure_angle), wishes.at(Quantity::cutter_radius), shafts,
+      shafts == 90 ? "(z1/z2)^2" : "z1 cos(d2)/(z2 cos(d1))");
 }
 
 std::string spiral_bevel_text(const Wishes& wishes) {

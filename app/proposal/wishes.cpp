@@ -23,6 +23,22 @@ constexpr Route kMillRoutes[] = {Route::ball, Route::line};
 constexpr Question kQuestions[] = {
     {Quantity::teeth, "--teeth", "teeth of the gear", {10, 1000}, true},
     {Quantity::mate_teeth, "--mate-teeth", "teeth of the mate", {8, 1000}, true},
+    {Quantity::pitch_angle,
+     "--pitch-angle",
+     "pitch angle of a spiral bevel gear, instead of the shaft angle",
+     {1, 88, " deg"},
+     false},
+    {Quantity::shaft_angle, "--shaft-angle", "shaft angle of a spiral bevel gear", {10, 170, " deg"}, false},
+    {Quantity::cone_distance,
+     "--cone-distance",
+     "outer cone distance of a spiral bevel gear, instead of the module",
+     {1, 2000, " mm"},
+     false},
+    {Quantity::mean_cone_distance,
+     "--mean-cone-distance",
+     "cone distance in the middle of its face, instead of the module; takes --face-width",
+     {1, 2000, " mm"},
+     false},
     {Quantity::shaper_teeth, "--shaper-teeth", "teeth of the shaper, or of the pinion", {8, 400}, true},
     {Quantity::module,
      "--module",
@@ -46,7 +62,7 @@ constexpr Question kQuestions[] = {
     {Quantity::spiral,
      "--spiral",
      "spiral angle, of herringbones at the large end, of a spiral bevel gear in the middle of the face",
-     {10, 45, " deg"},
+     {0, 45, " deg"},
      false},
     {Quantity::face_width,
      "--face-width",
@@ -102,7 +118,7 @@ double least_shift(const Wishes& wishes) {
 /// Of the standard face mills the one that is nearest to the mean cone distance; smaller gears have one of their own.
 double proposed_cutter(const Wishes& wishes) {
   constexpr double kDiameters[] = {2.75, 3.5, 4.5, 5, 6, 7.5, 9, 10.5, 12, 14, 16, 18, 21};  // inch
-  const double teeth = wishes.at(Quantity::teeth), delta = std::atan2(teeth, wishes.at(Quantity::mate_teeth)),
+  const double teeth = wishes.at(Quantity::teeth), delta = spiral_bevel::pitch_angle(drawing_of(wishes)),
                mean = 0.5 * (wishes.at(Quantity::module) * teeth / std::sin(delta) - wishes.at(Quantity::face_width));
   if (mean < 0.5 * kInch * kDiameters[0]) return std::max(1.0, rounded(mean, 0.5));
   double best = 0;
@@ -169,7 +185,11 @@ bool belongs(const Question& question, Gear gear) {
     case Quantity::pressure_angle: return true;
     case Quantity::mate_teeth: return bevel;
     case Quantity::spiral: return herringbone || spiral;
-    case Quantity::cutter_radius: return spiral;
+    case Quantity::cutter_radius:
+    case Quantity::pitch_angle:
+    case Quantity::shaft_angle:
+    case Quantity::cone_distance:
+    case Quantity::mean_cone_distance: return spiral;
     case Quantity::face_width: return bevel || cylindrical;
     case Quantity::profile_shift: return cylindrical;
     case Quantity::offset: return gear == Gear::offset;
@@ -189,7 +209,11 @@ std::optional<double> proposed(Quantity quantity, const Wishes& wishes) {
   switch (quantity) {
     case Quantity::teeth:
     case Quantity::mate_teeth:
+    case Quantity::pitch_angle:
+    case Quantity::cone_distance:
+    case Quantity::mean_cone_distance:
     case Quantity::module: return std::nullopt;
+    case Quantity::shaft_angle: return 90.0;
     case Quantity::fillet_radius: {
       if (!wishes.grid) return std::nullopt;
       const flank_grid::MeridianProposal meridians({wishes.grid->plus, wishes.grid->minus});
@@ -212,7 +236,8 @@ std::optional<double> proposed(Quantity quantity, const Wishes& wishes) {
     case Quantity::face_width: {
       if (wishes.gear == Gear::cylindrical) return std::max(1.0, rounded(8 * m, 0.5));
       if (wishes.gear == Gear::cylindrical_double_helical) return std::max(2.0, rounded(14 * m, 0.5));
-      const double delta = std::atan2(teeth, wishes.at(Quantity::mate_teeth));
+      const double delta = wishes.gear == Gear::spiral_bevel ? spiral_bevel::pitch_angle(drawing_of(wishes))
+                                                             : std::atan2(teeth, wishes.at(Quantity::mate_teeth));
       const double width = 0.29 * 0.5 * m * teeth / std::sin(delta);
       return rounded(wishes.gear == Gear::spiral_bevel ? std::min(width, 10 * m) : width, 0.5);
     }

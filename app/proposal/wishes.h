@@ -51,6 +51,10 @@ enum class Quantity : std::uint8_t {
   teeth,
   shaper_teeth,
   mate_teeth,
+  pitch_angle,  ///< says the shaft angle
+  shaft_angle,
+  cone_distance,  ///< outer; says the module, as the next one does
+  mean_cone_distance,
   module,
   pressure_angle,
   helix,
@@ -65,7 +69,7 @@ enum class Quantity : std::uint8_t {
   fillet_radius,
   bore,
 };
-inline constexpr std::size_t kQuantities = 16;
+inline constexpr std::size_t kQuantities = 20;
 
 /// mm and deg, as a job says them.
 struct Wishes {
@@ -101,6 +105,10 @@ struct Question {
 
 /// In the order in which they are asked.
 [[nodiscard]] std::span<const Question> questions();
+/// Of a drawing, where it stands instead of another quantity: asked for by options alone.
+[[nodiscard]] constexpr bool stands_for_another(Quantity what) {
+  return what == Quantity::pitch_angle || what == Quantity::cone_distance || what == Quantity::mean_cone_distance;
+}
 /// Does a gear of this kind have the quantity?
 [[nodiscard]] bool belongs(const Question& question, Gear gear);
 /// What is proposed after the answers so far; nothing: only the user knows.

@@ -9,15 +9,12 @@
 namespace toothpath::spiral_bevel {
 namespace {
 
-// Gleason's proportions of spiral bevel gears with shafts at 90 deg, in outer transverse modules.
+// Gleason's proportions of spiral bevel gears, in outer transverse modules.
 constexpr double kWorkingDepth = 1.7, kClearance = 0.188, kWheelAddendum = 0.46, kOfRatio = 0.39;
-constexpr double kMostTaper = 1.3;  // of the dedendum angles of standard taper (ISO 23509)
+constexpr double kMostTaper = 1.3;           // of the dedendum angles of standard taper (ISO 23509)
+constexpr double kMostPitch = 88 * kDegree;  // of either gear: a crown gear has no cone to roll on
 constexpr int kRounds = 40;
 constexpr double kSettled = 1e-10;  // rad, and of the module
-
-double pitch_angle(const Drawing& d) {
-  return std::atan2(std::sin(d.shaft_angle_rad), double(d.mate_teeth) / d.teeth + std::cos(d.shaft_angle_rad));
-}
 
 /// Heights in the middle of the face, and the angles of root and face against the pitch cone.
 struct Proportions {
@@ -28,8 +25,11 @@ struct Proportions {
 Proportions proportions(const Drawing& d) {
   const double R_e = outer_cone_distance(d), R_m = R_e - 0.5 * d.face_width_mm,
                m = d.outer_transverse_module_mm * R_m / R_e;
-  const double ratio = double(std::min(d.teeth, d.mate_teeth)) / std::max(d.teeth, d.mate_teeth),
-               of_wheel = m * (kWheelAddendum + kOfRatio * ratio * ratio), of_pinion = kWorkingDepth * m - of_wheel;
+  // (z1/z2)^2 of the pair at 90 deg with the same cones' curvatures: z1 cos(d2)/(z2 cos(d1)).
+  const double own = pitch_angle(d), other = d.shaft_angle_rad - own,
+               ratio_2 = d.teeth <= d.mate_teeth ? d.teeth * std::cos(other) / (d.mate_teeth * std::cos(own))
+                                                 : d.mate_teeth * std::cos(own) / (d.teeth * std::cos(other)),
+               of_wheel = m * (kWheelAddendum + kOfRatio * ratio_2), of_pinion = kWorkingDepth * m - of_wheel;
   Proportions p;
   p.addendum = d.teeth <= d.mate_teeth ? of_pinion : of_wheel;
   p.mate_addendum = kWorkingDepth * m - p.addendum;
@@ -65,6 +65,16 @@ Middle middle_of(const SetUp& made) {
 
 }  // namespace
 
+double pitch_angle(const Drawing& d) {
+  return std::atan2(std::sin(d.shaft_angle_rad), double(d.mate_teeth) / d.teeth + std::cos(d.shaft_angle_rad));
+}
+
+std::optional<double> shaft_angle_of(double pitch_angle_rad, double ratio) {
+  const double sine = ratio * std::sin(pitch_angle_rad);
+  if (!(sine < 1)) return {};
+  return pitch_angle_rad + std::asin(sine);
+}
+
 double outer_cone_distance(const Drawing& d) {
   return 0.5 * d.outer_transverse_module_mm * d.teeth / std::sin(pitch_angle(d));
 }
@@ -72,6 +82,15 @@ double outer_cone_distance(const Drawing& d) {
 Expected<SpiralBevelParameters, Refusal> basic_settings(const Drawing& d, double edge_radius_mm) {
   const double delta = pitch_angle(d), R_e = outer_cone_distance(d), R_m = R_e - 0.5 * d.face_width_mm,
                alpha = d.pressure_angle_rad, beta = d.spiral_angle_rad, r_c = d.cutter_radius_mm;
+  if (const double other = d.shaft_angle_rad - delta; !(delta < kMostPitch && other < kMostPitch)) {
+    const double ratio = double(std::min(d.teeth, d.mate_teeth)) / std::max(d.teeth, d.mate_teeth);
+    return Refusal{
+        "shaft_angle",
+        fail("shaft_angle = {:.4f} deg: the wheel's pitch angle of {:.4f} deg is not below {:g} deg, teeth on "
+             "the outside of a cone; a shaft angle below {:.4f} deg would do",
+             degrees(d.shaft_angle_rad), degrees(std::max(delta, other)), degrees(kMostPitch),
+             degrees(kMostPitch + std::asin(ratio * std::sin(kMostPitch))))};
+  }
   const Proportions depth = proportions(d);
   SpiralBevelParameters p;
   p.teeth = d.teeth;

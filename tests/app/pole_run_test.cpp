@@ -354,7 +354,14 @@ gouge_tolerance = 0.005
   const Finished beside = run_program({"run", job, "--out", dir / "out", "--quiet"});
   EXPECT_EQ(beside.exit_code, 0) << beside.out << beside.err;
   const std::string program = file_text(dir / "out/program.nc");
-  EXPECT_NE(program.find("G43.4"), std::string::npos);
+  // The start over the gear axis instead: from there the tool swings over the part.
+  const std::size_t on = program.find("G0 G43.4"), line = program.rfind("G0 X", on);
+  ASSERT_NE(on, std::string::npos);
+  ASSERT_NE(line, std::string::npos);
+  write_file(dir / "over.nc", program.substr(0, line) + "G0 X0. Y0.\n" + program.substr(on));
+  const Finished over = run_program({"check", job, dir / "over.nc", "--out", dir / "over"});
+  EXPECT_EQ(over.exit_code, 1);
+  EXPECT_NE(over.err.find("a rapid passes through the part: the holder of the tool"), std::string::npos) << over.err;
   write_file(dir / "fanuc_axes.toml", replaced(file_text(data), "tcp = \"angles\"", "tcp = \"none\""));
   write_file(job, replaced(text, "\"fanuc_ac\"", "\"fanuc_axes\""));
   const Finished made = run_program({"run", job, "--out", dir / "out", "--quiet"});

@@ -32,14 +32,24 @@ Drawing drawing(int teeth, int mate, double module, double face, double spiral, 
 TEST(BasicSettings, MakeWhatTheDrawingSays) {
   struct {
     int teeth, mate;
-    double module, face, spiral, cutter;
-  } pairs[] = {
-      {12, 36, 5, 25, 35, 76.2}, {30, 30, 2, 12, 35, 31.75}, {25, 30, 3, 18, 35, 57.15}, {9, 37, 5, 28, 35, 95.25}};
-  for (const auto& [teeth, mate, module, face, spiral, cutter] : pairs) {
+    double module, face, spiral, cutter, shafts = 90;
+  } pairs[] = {{12, 36, 5, 25, 35, 76.2},      {30, 30, 2, 12, 35, 31.75},    {25, 30, 3, 18, 35, 57.15},
+               {9, 37, 5, 28, 35, 95.25},      {17, 28, 4, 20, 35, 76.2, 60}, {16, 31, 4, 20, 35, 76.2, 110},
+               {20, 40, 3, 18, 30, 76.2, 75.5}};
+  for (const auto& [teeth, mate, module, face, spiral, cutter, shafts] : pairs) {
     double spaces = 0, pitch = 0;
     for (const bool wheel : {false, true}) {
-      const auto settings = basic_settings(drawing(teeth, mate, module, face, spiral, cutter, wheel), 0.1 * module);
+      Drawing asked = drawing(teeth, mate, module, face, spiral, cutter, wheel);
+      asked.shaft_angle_rad = radians(shafts);
+      const auto settings = basic_settings(asked, 0.1 * module);
       ASSERT_TRUE(settings) << settings.error().diagnostic.message;
+      // Both pitch cones roll on each other at this shaft angle, and either says it.
+      Drawing other = asked;
+      std::swap(other.teeth, other.mate_teeth);
+      EXPECT_NEAR(pitch_angle(asked) + pitch_angle(other), radians(shafts), 1e-12);
+      EXPECT_NEAR(outer_cone_distance(asked), outer_cone_distance(other), 1e-10);
+      EXPECT_NEAR(spiral_bevel::shaft_angle_of(pitch_angle(asked), double(asked.mate_teeth) / asked.teeth).value(),
+                  radians(shafts), 1e-12);
       const auto made = SpiralBevelGear::make(settings.value());
       ASSERT_TRUE(made) << teeth << " " << made.error().front().diagnostic.message;
       const SpiralBevelGear& gear = made.value();
@@ -60,6 +70,25 @@ TEST(BasicSettings, MakeWhatTheDrawingSays) {
     }
     EXPECT_NEAR(spaces, pitch, 1e-8);
   }
+}
+
+/// Shafts at which the wheel would have to be a crown or an internal gear: the angle that is named does, a little more
+/// does not.
+TEST(BasicSettings, ShaftsForAnInternalWheelAreRefusedWithTheirLimit) {
+  Drawing d = drawing(12, 36, 5, 25, 35, 76.2, false);
+  d.shaft_angle_rad = radians(120);
+  const auto refused = basic_settings(d, 0.5);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().key, "shaft_angle");
+  const std::string& text = refused.error().diagnostic.message;
+  const std::string lead = "a shaft angle below ";
+  const double limit = std::stod(text.substr(text.find(lead) + lead.size()));
+  d.shaft_angle_rad = radians(limit - 1e-3);
+  const auto below = basic_settings(d, 0.5);
+  EXPECT_TRUE(below || below.error().key != "shaft_angle") << text;
+  d.shaft_angle_rad = radians(limit + 1e-3);
+  EXPECT_FALSE(basic_settings(d, 0.5)) << text;
+  EXPECT_FALSE(spiral_bevel::shaft_angle_of(radians(40), 2));
 }
 
 }  // namespace
