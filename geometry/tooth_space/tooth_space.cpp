@@ -93,7 +93,7 @@ std::optional<CurveBend> azimuth_of_edge(const ToothSpace& space, int side, cons
 
 std::optional<CurveBend> ToothSpace::tip_azimuth(int side, const EdgePlace& from, double s_from, const EdgePlace& to,
                                                  double s_to) const {
-  constexpr int kHalvings = 6;
+  constexpr int kHalvings = 9;     // near the place where a flank folds back bounds are loose
   constexpr double kLoose = 2e-4;  // mm: of how far the edge leaves its chord, by what its bounds lie apart
   // The edge leaves its chord by an eighth of step^2 times radius (slope^2 + bend).
   const double s = 0.5 * (s_from + s_to), step = s_to - s_from, r = outline().chart.r(s, tip(s)),
