@@ -67,6 +67,16 @@ Result<std::vector<LinePass>> passes_of(const std::vector<FlankTask>& flanks, co
   return out;
 }
 
+/// Adds what a choice leaves to the ways of its number of strips.
+void add_way(const Choice& choice, const std::vector<LinePass>& passes, double misfit_mm,
+             std::vector<LinePlan::Way>& ways) {
+  const bool given_up =
+      std::any_of(passes.begin(), passes.end(), [](const LinePass& pass) { return pass.records.empty(); });
+  if (ways.empty() || ways.back().strips != choice.strips) ways.push_back({choice.strips, INFINITY, true});
+  LinePlan::Way& way = ways.back();
+  if (misfit_mm < way.misfit_mm) way.misfit_mm = misfit_mm, way.given_up = given_up;
+}
+
 double worst_of(const std::vector<LinePass>& passes) {
   double worst = 0;
   for (const auto& p : passes) worst = std::max(worst, p.misfit_mm);
@@ -276,6 +286,7 @@ Result<LinePlan> plan_line_milling(const tooth_space::ToothedPart& part, const t
       continue;
     }
     plan.misfit_mm = worst_of(*passes);
+    add_way(choice, *passes, plan.misfit_mm, plan.ways);
     if (plan.misfit_mm < least) best = choice;
     least = std::min(least, plan.misfit_mm);
     if (o.left_mm && plan.misfit_mm > *o.left_mm) continue;
@@ -288,6 +299,10 @@ Result<LinePlan> plan_line_milling(const tooth_space::ToothedPart& part, const t
   }
   if (plan.passes.empty() && least == INFINITY && refused) return *refused;
   if (plan.passes.empty()) return fail("{}", missed(o, choices, best, least));
+  plan.ways.back().misfit_mm = plan.misfit_mm;
+  if (o.strips || !o.left_mm) plan.ways.clear();
+  else
+    for (const FlankTask& flank : flanks) plan.ball_passes += ball_passes_for(flank, tool.law()->r_0, *o.left_mm);
   const auto strips = std::size_t(plan.strips);
   for (std::size_t k = 0; k < flanks.size(); ++k)
     measure_left(flanks[k], tool, std::span(plan.passes).subspan(k * strips, strips));

@@ -55,12 +55,20 @@ struct LineOperation {
 };
 
 struct LinePlan {
+  /// A number of strips that was tried, and the least that it left; `given_up`: no pass was finished, it leaves more.
+  struct Way {
+    int strips = 1;
+    double misfit_mm = 0;
+    bool given_up = false;
+  };
   path::ClPath path;
   std::vector<LinePass> passes;  ///< zones with rising s, flank +1 then -1, strips from the tip down; the path may
                                  ///< order flanks otherwise
   int strips = 1;
   Rotaries rotaries = Rotaries::both;
-  double misfit_mm = 0;  ///< worst of the passes
+  double misfit_mm = 0;   ///< worst of the passes
+  std::vector<Way> ways;  ///< with rising strips, the planned one last; where `left` chose them
+  int ball_passes = 0;  ///< that the ball end of this tool would take for the same `left`, of all flanks; 0: not asked
   [[nodiscard]] double left_mm() const {
     double most = 0;
     for (const LinePass& pass : passes) most = std::max(most, pass.left_mm);

@@ -111,19 +111,27 @@ bool wants_upright(const FlankTask& t) {
   return false;
 }
 
-/// From the tip down to every depth, in even steps: the integral of sqrt(bend of the profile) over its length. A strip
-/// with the share w of it sags by w^2/8. Empty where the flank has no such places.
-std::vector<double> sags_of(const FlankTask& flank, double s) {
+/// From the tip down to every depth, in even steps: the integral of sqrt(bend of the profile) over its length, with
+/// what bends towards it, 1/mm. A strip with the share w of it sags by w^2/8. Empty where the flank has no such places.
+std::vector<double> sags_of(const FlankTask& flank, double s, double against_per_mm = 0) {
   std::vector<double> sum{0};
   const double step = flank.depth / kSagSteps;
   for (int k = 0; k < kSagSteps; ++k) {
     const auto place = flank.at_depth(s, (k + 0.5) * step);
     if (!place) return {};
     const auto frame = flank.frame(place->on);
-    sum.push_back(sum.back() + std::sqrt(std::abs(shape_at(frame, place->on).pp)) * step * flank.deep.share(s) /
-                                   frame.p.dot(flank.up(place->on.p)));
+    sum.push_back(sum.back() + std::sqrt(std::abs(shape_at(frame, place->on).pp + against_per_mm)) * step *
+                                   flank.deep.share(s) / frame.p.dot(flank.up(place->on.p)));
   }
   return sum;
+}
+
+/// Passes of which each leaves about `left_mm`, as far as the bends tell.
+int passes_for(const FlankTask& flank, double against_per_mm, double left_mm) {
+  double most = 0;
+  for (const double s : {flank.s_from, 0.5 * (flank.s_from + flank.s_to), flank.s_to})
+    if (const auto sags = sags_of(flank, s, against_per_mm); !sags.empty()) most = std::max(most, sags.back());
+  return std::max(1, int(std::ceil(most / std::sqrt(8 * left_mm))));
 }
 
 }  // namespace
@@ -176,12 +184,9 @@ std::vector<Strip> strips_of(const FlankTask& flank, int n) {
   return out;
 }
 
-int strips_for(const FlankTask& flank, double left_mm) {
-  double most = 0;
-  if (flank.upright)
-    for (const double s : {flank.s_from, 0.5 * (flank.s_from + flank.s_to), flank.s_to})
-      if (const auto sags = sags_of(flank, s); !sags.empty()) most = std::max(most, sags.back());
-  return std::max(1, int(std::ceil(most / std::sqrt(8 * left_mm))));
+int strips_for(const FlankTask& flank, double left_mm) { return flank.upright ? passes_for(flank, 0, left_mm) : 1; }
+int ball_passes_for(const FlankTask& flank, double ball_radius_mm, double left_mm) {
+  return passes_for(flank, 1 / ball_radius_mm, left_mm);
 }
 
 std::optional<LineFit::Anchor> LineFit::anchor(double s) const {

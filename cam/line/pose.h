@@ -96,6 +96,9 @@ struct Strip {
 /// Strips of which each leaves about `left_mm`, as far as the bend of the profile tells: of an upright flank. 1 of any
 /// other.
 [[nodiscard]] int strips_for(const FlankTask& flank, double left_mm);
+/// Passes of a ball end, side by side over the height of the flank, that leave cusps of about `left_mm`: they lie
+/// sqrt(8 left / (1/R + k)) apart, k > 0 where the profile is convex.
+[[nodiscard]] int ball_passes_for(const FlankTask& flank, double ball_radius_mm, double left_mm);
 
 /// The gap at one height of the axis, beyond the allowance.
 struct GapNode {

@@ -39,6 +39,18 @@ const char* moving_text(line::Rotaries rotaries) {
   return "";
 }
 
+/// What was tried before a number of strips, what that would take by the ball end, and which was taken.
+std::string ways_text(const line::LinePlan& planned) {
+  if (planned.ways.empty()) return "";
+  std::string text = "; the ways:";
+  for (const line::LinePlan::Way& way : planned.ways)
+    text += fmt::format(" {} strip{} leave{} {}{:.2f} um,", way.strips, way.strips == 1 ? "" : "s",
+                        way.strips == 1 ? "s" : "", way.given_up ? "more than " : "", 1e3 * way.misfit_mm);
+  text.pop_back();
+  return text + fmt::format("; its ball end would take about {} passes where {} strip passes are taken",
+                            planned.ball_passes, planned.passes.size());
+}
+
 /// How the axis stands in the passes of one ring.
 proof::DirectionChoice direction_of(const line::LinePlan& planned, int operation, int zone, double clearance_mm) {
   proof::DirectionChoice d;
@@ -74,9 +86,9 @@ proof::DirectionChoice direction_of(const line::LinePlan& planned, int operation
   d.explanation = fmt::format(
       "the side of the mill touches the flank along its height in {} strip{}: the axis leans {:.1f} to {:.1f} deg from "
       "the gear axis, {}; the misfit of the straight side is {:.2f} um at most, shank and holder keep {:.3f} mm or "
-      "more",
+      "more{}",
       planned.strips, planned.strips == 1 ? "" : "s", degrees(d.least_lean_rad), degrees(d.greatest_lean_rad),
-      moving_text(planned.rotaries), 1e3 * misfit, clearance_mm);
+      moving_text(planned.rotaries), 1e3 * misfit, clearance_mm, ways_text(planned));
   return d;
 }
 

@@ -71,6 +71,17 @@ TEST(LineRuns, OffsetAndSpurSamplesInOneStrip) {
       EXPECT_EQ(operation.value("strips", 1), 1);
       misfit = operation.value("misfit_um", misfit);
     }
+    // Where `left` chose, the plan says what each way would take; where the job says the strips, nothing was chosen.
+    int chosen = 0, asked = 0;
+    for (const auto& direction : report["tilt"]["directions"]) {
+      const std::string text = direction["explanation"];
+      if (text.find("the side of the mill") == std::string::npos) continue;
+      const bool told = text.find("; the ways: 1 strip leaves ") != std::string::npos &&
+                        text.find("; its ball end would take about ") != std::string::npos;
+      ++(told ? chosen : asked);
+    }
+    EXPECT_EQ(chosen, 2) << name;
+    EXPECT_EQ(asked, 1) << name;
     const auto& entry = report["ledger"]["line misfit"];
     EXPECT_GT(misfit, 0) << name;
     EXPECT_NEAR(misfit, entry["measured"].get<double>(), 1e-9) << name;

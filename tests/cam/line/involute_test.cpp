@@ -196,6 +196,23 @@ TEST(Involute, PassesByBruteForce) {
     EXPECT_EQ(plan->strips, strips);
     EXPECT_LE(plan->misfit_mm, left_mm);
     ASSERT_EQ(int(plan->passes.size()), 2 * strips);
+    // What the ways would take: fewer strips leave too much, and the ball many passes.
+    ASSERT_FALSE(plan->ways.empty());
+    EXPECT_EQ(plan->ways.back().strips, strips);
+    EXPECT_EQ(plan->ways.back().misfit_mm, plan->misfit_mm);
+    for (std::size_t k = 0; k + 1 < plan->ways.size(); ++k) EXPECT_GT(plan->ways[k].misfit_mm, left_mm);
+    if (gear.zones[0].helix_angle_rad == 0) {
+      const cylindrical::InvoluteKernel<double> w(gear, gear.zones[0]);
+      constexpr int kSteps = 2000;
+      double sum = 0;  // along the involute, whose radius of curvature is r_b theta
+      const double step = (w.theta_a - w.theta_f) / kSteps;
+      for (int k = 0; k < kSteps; ++k) {
+        const double bend = w.r_b * (w.theta_f + (k + 0.5) * step);
+        sum += std::sqrt(1 / (0.15 * m) + 1 / bend) * bend * step;
+      }
+      EXPECT_NEAR(plan->ball_passes, 2 * std::ceil(sum / std::sqrt(8 * left_mm)), 2);
+      EXPECT_GT(plan->ball_passes, 3 * int(plan->passes.size()));
+    }
     for (const auto& r : plan->path.records)
       if (r.kind == path::MoveKind::rapid) { EXPECT_GE(radius(r.tip), part->blank_top()); }
     for (const int side : {1, -1}) {
