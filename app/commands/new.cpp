@@ -15,6 +15,7 @@
 
 #include "app/base/dialog.h"
 #include "app/base/interruption.h"
+#include "app/base/kept_answers.h"
 #include "app/base/new_file.h"
 #include "app/base/option_number.h"
 #include "app/commands/run.h"
@@ -23,6 +24,7 @@
 #include "app/job/flank_points.h"
 #include "app/job/job.h"
 #include "app/job/loose_points.h"
+#include "app/proposal/explanations.h"
 #include "app/proposal/gear_limits.h"
 #include "app/proposal/library_shelf.h"
 #include "app/proposal/points_gear.h"
@@ -48,7 +50,8 @@ struct NewRequest : CommonRequest {
   std::string gear, route, machine, tools, unit, file, name;
   std::string points, points_unit, root, tip;  ///< of a gear by points
   std::string rexs, left_flank, ratio_of_roll;
-  std::string hand;  ///< of a spiral bevel gear by a drawing
+  std::string hand;  ///< of a spiral bevel gear by a drawing, of the inner half of a herringbone
+  bool with_mate = false, resume = false;
   std::optional<int> component;
   std::optional<double> dedendum, root_radius;
   std::vector<std::string> said;  ///< of tools: "12: stick_out = 40"
@@ -65,16 +68,68 @@ constexpr toml::Range kRackCoefficient{0, 3};
 
 using DoneOrErrors = Expected<Ok, std::vector<Diagnostic>>;
 
-/// A machine file by the word of a job, without its ending.
-std::vector<std::string> machine_names(bool shaper) {
+/// A job is UTF-8 and its texts are visible; names of files may be any bytes.
+Status can_be_named(const char* option, const std::string& text) {
+  if (printable(text) == text) return Ok{};
+  return fail_at({text, 0, 0},
+                 "{}: a job cannot name it: there are bytes in it that are not UTF-8, or signs that cannot "
+                 "be seen; give it another name",
+                 option);
+}
+
+/// Machine files by the words of a job, without their ending: those in a folder that can be used, installed ones.
+std::vector<std::string> machine_names(std::span<const std::string> files, const std::string& folder, bool shaper) {
   std::vector<std::string> names;
-  for (const std::string& file : machines::installed_machines()) {
-    const auto path = machines::find_machine_file(file, ".");
+  for (const std::string& file : files) {
+    const auto path = machines::find_machine_file(file, folder);
     const auto opened = path ? machines::open_machine_file(*path) : Result<machines::MachineFileText>(path.error());
     if (opened && (opened->kind == machines::MachineKind::gear_shaper) == shaper)
       names.push_back(fs::path(file).stem().string());
   }
   return names;
+}
+
+/// The TOML files in the folder of the job, in order.
+std::vector<std::string> files_beside(const std::string& folder) {
+  std::vector<std::string> files;
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
+    if (at->path().extension() == ".toml" && at->is_regular_file(error))
+      files.push_back(at->path().filename().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// One's own machine first; there is no default: a program for another machine is no help.
+DoneOrErrors ask_machine(Wishes& wishes, const NewRequest& request, Dialog& dialog) {
+  const bool shaper = wishes.route == proposal::Route::shaped;
+  const fs::path parent = fs::path(request.file).parent_path();
+  const std::string folder = parent.empty() ? "." : parent.string();
+  const std::vector<std::string> own = machine_names(files_beside(folder), folder, shaper),
+                                 installed = machine_names(machines::installed_machines(), ".", shaper);
+  if (!dialog.asks())
+    return usage(
+        fmt::format("--machine is missing: machine; a machine file, or one of {}", fmt::join(installed, ", ")));
+  if (!own.empty()) dialog.tell({{"machines beside the job", fmt::format("{}", fmt::join(own, ", "))}});
+  dialog.tell({{"machines that come with Toothpath", fmt::format("{}", fmt::join(installed, ", "))}});
+  const auto judge = [&](const std::string& answer) -> std::optional<std::string> {
+    if (const auto named = can_be_named("--machine", answer); !named) return named.error().message;
+    Wishes tried = wishes;
+    tried.machine = answer;
+    const auto machine = proposal::choose_machine(tried, parent.string());
+    const auto* errors = machine.refused();
+    return errors ? std::optional(errors->front().text()) : std::nullopt;
+  };
+  const auto machine = dialog.text("--machine", "machine: the name or the path of its file",
+                                   own.size() == 1 ? std::optional(own.front()) : std::nullopt, judge);
+  if (auto* errors = machine.refused()) return *errors;
+  wishes.machine = machine.value();
+  return Ok{};
+}
+
+/// Gears of whose pair one is left-hand and the other right-hand.
+bool has_hand(proposal::Gear gear) {
+  return gear == proposal::Gear::spiral_bevel || gear == proposal::Gear::bevel_herringbone;
 }
 
 constexpr std::array<std::string_view, 2> kHandWords = {"left", "right"};
@@ -83,8 +138,7 @@ constexpr std::array<std::string_view, 2> kRatioWords = {"work_per_cradle", "cra
 
 /// The gear of a REXS file by its number, or the only one.
 Expected<const rexs::Component*, std::vector<Diagnostic>> choose_component(const rexs::RexsFile& file,
-                                                                           std::optional<int> number,
-                                                                           const Dialog& dialog) {
+                                                                           std::optional<int> number, Dialog& dialog) {
   const std::vector<const rexs::Component*> gears = rexs::gears_of(file);
   if (gears.empty())
     return std::vector{fail_at({file.file, 1, 1}, "no cylindrical_gear and no bevel_gear stands in this file")};
@@ -108,7 +162,7 @@ Expected<const rexs::Component*, std::vector<Diagnostic>> choose_component(const
 }
 
 /// Asks what a REXS file leaves open.
-DoneOrErrors answer_question(rexs::Open open, const std::string& why, const Dialog& dialog, rexs::Said& said) {
+DoneOrErrors answer_question(rexs::Open open, const std::string& why, Dialog& dialog, rexs::Said& said) {
   const bool left = open == rexs::Open::left_flank;
   const char* option = left ? "--left-flank" : "--ratio-of-roll";
   const auto& words = left ? kFlankWords : kRatioWords;
@@ -140,7 +194,7 @@ Expected<rexs::Said, std::vector<Diagnostic>> said_of_rexs(const NewRequest& req
 }
 
 /// The gear of --rexs.
-Expected<Wishes, std::vector<Diagnostic>> gear_of_rexs(const NewRequest& request, const Dialog& dialog,
+Expected<Wishes, std::vector<Diagnostic>> gear_of_rexs(const NewRequest& request, Dialog& dialog,
                                                        proposal::Told& notes) {
   auto told = said_of_rexs(request);
   if (auto* errors = told.refused()) return std::move(*errors);
@@ -176,7 +230,7 @@ Expected<Wishes, std::vector<Diagnostic>> gear_of_rexs(const NewRequest& request
 }
 
 /// Kind of gear, and all of one that stands in a file.
-Expected<Wishes, std::vector<Diagnostic>> gear_wished(const NewRequest& request, const Dialog& dialog,
+Expected<Wishes, std::vector<Diagnostic>> gear_wished(const NewRequest& request, Dialog& dialog,
                                                       proposal::Told& notes) {
   using Given = std::vector<std::pair<const char*, bool>>;
   const Given by_points = {{"--points", !request.points.empty()},
@@ -213,7 +267,7 @@ Expected<Wishes, std::vector<Diagnostic>> gear_wished(const NewRequest& request,
       proposal::gear_words());
   if (auto* errors = gear.refused()) return *errors;
   wishes.gear = proposal::gear_of(gear.value());
-  if (wishes.gear != proposal::Gear::spiral_bevel)
+  if (!has_hand(*wishes.gear))
     if (auto errors = belong(fmt::format("to --gear {}", gear.value()).c_str(), {{"--hand", !request.hand.empty()}});
         !errors.empty())
       return errors;
@@ -224,7 +278,7 @@ Expected<Wishes, std::vector<Diagnostic>> gear_wished(const NewRequest& request,
 }
 
 /// Kind of gear, how it is cut and on which machine.
-Expected<Wishes, std::vector<Diagnostic>> kinds_wished(const NewRequest& request, const Dialog& dialog,
+Expected<Wishes, std::vector<Diagnostic>> kinds_wished(const NewRequest& request, Dialog& dialog,
                                                        proposal::Told& notes) {
   auto wished = gear_wished(request, dialog, notes);
   if (wished.refused()) return wished;
@@ -236,13 +290,8 @@ Expected<Wishes, std::vector<Diagnostic>> kinds_wished(const NewRequest& request
   if (auto* errors = route.refused()) return *errors;
   wishes.route = proposal::route_of(route.value());
   wishes.machine = request.machine;
-  if (wishes.machine.empty()) {
-    const std::vector<std::string> names = machine_names(wishes.route == proposal::Route::shaped);
-    const std::vector<std::string_view> words(names.begin(), names.end());
-    const auto machine = dialog.word("--machine", "machine", "", words);
-    if (auto* errors = machine.refused()) return *errors;
-    wishes.machine = machine.value();
-  }
+  if (wishes.machine.empty())
+    if (auto asked = ask_machine(wishes, request, dialog); auto* errors = asked.refused()) return std::move(*errors);
   return wishes;
 }
 
@@ -256,7 +305,7 @@ std::optional<double> proposed_number(const Question& question, const Wishes& wi
 }
 
 /// Asks until the machine turns the gear as far as its diameter is known.
-DoneOrErrors wish_number(Wishes& wishes, const Question& question, std::optional<double> given, const Dialog& dialog,
+DoneOrErrors wish_number(Wishes& wishes, const Question& question, std::optional<double> given, Dialog& dialog,
                          const proposal::ChosenMachine& machine) {
   const auto proposed = proposed_number(question, wishes, machine);
   const bool ends = question.what == Quantity::inner || question.what == Quantity::outer;
@@ -280,13 +329,13 @@ DoneOrErrors wish_number(Wishes& wishes, const Question& question, std::optional
     if (turns) return Ok{};
     if (given || !dialog.asks() || !ends) return std::vector{turns.error()};
     dialog.tell({{"too large", turns.error().message}});
+    dialog.forget(question.option);
     wishes[question.what].reset();
   }
 }
 
 /// The points of --points, or of a file that is asked for.
-Expected<proposal::PointsOfFile, std::vector<Diagnostic>> choose_points(const NewRequest& request,
-                                                                        const Dialog& dialog) {
+Expected<proposal::PointsOfFile, std::vector<Diagnostic>> choose_points(const NewRequest& request, Dialog& dialog) {
   const auto unit = app::read_length_unit("--points-unit", request.points_unit);
   if (!unit) return std::vector{unit.error()};
   std::string file = request.points;
@@ -306,7 +355,7 @@ Expected<proposal::PointsOfFile, std::vector<Diagnostic>> choose_points(const Ne
 }
 
 /// The unit of points that are small in mm and state none: asked for, never guessed.
-DoneOrErrors ask_unit(proposal::PointsOfFile& points, double teeth, const Dialog& dialog) {
+DoneOrErrors ask_unit(proposal::PointsOfFile& points, double teeth, Dialog& dialog) {
   const auto why = proposal::looks_like_inches(points, teeth);
   if (!why) return Ok{};
   if (!dialog.asks()) return usage(fmt::format("--points-unit is missing, mm or inch: {}", *why));
@@ -322,8 +371,7 @@ DoneOrErrors ask_unit(proposal::PointsOfFile& points, double teeth, const Dialog
 /// A meridian as an option says it; asked for, with what follows from the points.
 Expected<std::vector<Vec2>, std::vector<Diagnostic>> ask_meridian(const char* option, const char* text,
                                                                   const std::string& given,
-                                                                  const std::vector<Vec2>& proposed,
-                                                                  const Dialog& dialog) {
+                                                                  const std::vector<Vec2>& proposed, Dialog& dialog) {
   std::string said = given;
   if (said.empty() && !dialog.asks()) return proposed;
   if (said.empty()) {
@@ -341,8 +389,7 @@ Expected<std::vector<Vec2>, std::vector<Diagnostic>> ask_meridian(const char* op
 }
 
 /// Tip and root of a gear by points, behind its teeth and ahead of its fillet.
-DoneOrErrors wish_meridians(Wishes& wishes, proposal::PointsOfFile& points, const NewRequest& request,
-                            const Dialog& dialog) {
+DoneOrErrors wish_meridians(Wishes& wishes, proposal::PointsOfFile& points, const NewRequest& request, Dialog& dialog) {
   const double teeth = wishes.at(Quantity::teeth);
   if (auto asked = ask_unit(points, teeth, dialog); asked.refused()) return asked;
   const flank_grid::MeridianProposal meridians(points.points);
@@ -408,11 +455,13 @@ Expected<std::optional<double>, std::vector<Diagnostic>> given_by_drawing(Quanti
   return module_of(wishes, *mean + 0.5 * *width);
 }
 
-/// Of a spiral bevel gear by a drawing; without a terminal pinions are left-hand and wheels right-hand.
-DoneOrErrors wish_hand(Wishes& wishes, const std::string& given, const Dialog& dialog) {
+/// Without a terminal pinions are left-hand and wheels right-hand.
+DoneOrErrors wish_hand(Wishes& wishes, const std::string& given, Dialog& dialog) {
   const bool pinion = wishes.at(Quantity::teeth) <= wishes.at(Quantity::mate_teeth);
   const auto word =
-      dialog.word("--hand", "hand of its spiral; its mate has the other",
+      dialog.word("--hand",
+                  wishes.gear == proposal::Gear::bevel_herringbone ? "hand of its inner half; its mate has the other"
+                                                                   : "hand of its spiral; its mate has the other",
                   given.empty() && !dialog.asks() ? std::string(kHandWords[pinion ? 0 : 1]) : given, kHandWords);
   if (auto* errors = word.refused()) return *errors;
   wishes.hand = word.value() == kHandWords[0] ? -1 : 1;
@@ -420,7 +469,7 @@ DoneOrErrors wish_hand(Wishes& wishes, const std::string& given, const Dialog& d
 }
 
 /// All numbers of the gear, each with the limits that are known before it.
-DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, const Dialog& dialog,
+DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, Dialog& dialog,
                           const proposal::ChosenMachine& machine) {
   if (wishes.whole()) {
     for (const Question& question : proposal::questions())
@@ -456,7 +505,7 @@ DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, const Dialo
     if (auto* errors = said.refused()) return std::move(*errors);
     if (auto asked = wish_number(wishes, question, said.value(), dialog, machine); asked.refused()) return asked;
   }
-  if (wishes.gear == proposal::Gear::spiral_bevel) return wish_hand(wishes, request.hand, dialog);
+  if (has_hand(*wishes.gear)) return wish_hand(wishes, request.hand, dialog);
   if (!by_points) return Ok{};
   flank_grid::FlankGridParameters grid = *wishes.grid;
   grid.fillet_radius_mm = wishes.at(Quantity::fillet_radius);
@@ -633,7 +682,7 @@ std::string lacking(const LibraryShelf& library, const Choice& choice) {
 }
 
 /// Asks for every key that a tool lacks.
-DoneOrErrors complete(LibraryShelf& library, int number, proposal::Route route, const Dialog& dialog) {
+DoneOrErrors complete(LibraryShelf& library, int number, proposal::Route route, Dialog& dialog) {
   while (!library.find(number)->whole()) {
     const LibraryShelf::Tool& tool = *library.find(number);
     const job::MissingKey key = LibraryShelf::missing(tool, route).front();
@@ -668,7 +717,7 @@ std::vector<int> numbers_in(const std::string& text) {
 
 /// Asks which tools of a library may be used, and for what it does not say of them.
 Expected<proposal::Shelf, std::vector<Diagnostic>> ask_for_tools(LibraryShelf& library, const Choice& choice,
-                                                                 const Dialog& dialog) {
+                                                                 Dialog& dialog) {
   const proposal::Route route = *choice.wishes.route;
   const auto candidates = library.candidates(route, choice.gear.facts);
   proposal::Told told;
@@ -696,17 +745,8 @@ Expected<proposal::Shelf, std::vector<Diagnostic>> ask_for_tools(LibraryShelf& l
   return shelf;
 }
 
-/// A job is UTF-8 and its texts are visible; names of files may be any bytes.
-Status can_be_named(const char* option, const std::string& text) {
-  if (printable(text) == text) return Ok{};
-  return fail_at({text, 0, 0},
-                 "{}: a job cannot name it: there are bytes in it that are not UTF-8, or signs that cannot "
-                 "be seen; give it another name",
-                 option);
-}
-
 /// The tools of --tools: of a job, or of a file of another program.
-DoneOrErrors choose_tools(const NewRequest& request, const Dialog& dialog, Choice& choice) {
+DoneOrErrors choose_tools(const NewRequest& request, Dialog& dialog, Choice& choice) {
   const bool library_file = !request.tools.empty() && fs::path(request.tools).extension() != ".toml";
   if (!library_file && !request.said.empty())
     return usage("--tool says what a tool library does not, and --tools names none");
@@ -755,7 +795,7 @@ DoneOrErrors choose_tools(const NewRequest& request, const Dialog& dialog, Choic
 }
 
 /// All that is asked for, in its order.
-Expected<Choice, std::vector<Diagnostic>> choose(const NewRequest& request, const Dialog& dialog) {
+Expected<Choice, std::vector<Diagnostic>> choose(const NewRequest& request, Dialog& dialog) {
   Choice choice;
   auto wished = kinds_wished(request, dialog, choice.notes);
   if (auto* errors = wished.refused()) return std::move(*errors);
@@ -810,39 +850,157 @@ class PointsBesideJob {
   std::string path_;
 };
 
-CommandOutcome run_new(const NewRequest& asked) {
-  NewRequest request = asked;
-  if (request.file.empty()) return failed(usage("-o is missing: the job file to write"));
-  if (const auto fresh = app::check_new_file(request.file, "-o"); !fresh) return failed(fresh.error());
-  if (request.name.empty()) request.name = fs::path(request.file).stem().string();
-  for (const auto& [option, text] : {std::pair("--name", &request.name), {"--machine", &request.machine}})
-    if (const auto named = can_be_named(option, *text); !named) return failed(named.error());
-  const Dialog dialog(request.quiet);
-  auto chosen = choose(request, dialog);
-  if (auto* errors = chosen.refused()) return failed(std::move(*errors));
-  Choice& choice = chosen.value();
-  PointsBesideJob points;
-  if (auto written = points.write(request.file, choice.wishes); !written) return failed(written.error());
+/// What the try refused, without places in a job that goes again.
+std::vector<Diagnostic> without_places(std::vector<Diagnostic> errors) {
+  for (Diagnostic& error : errors)
+    if (error.kind != DiagnosticKind::file_access) error.position = {};
+  return errors;
+}
+
+/// A job and what is told of it.
+struct MadeJob {
+  Proposed proposed;
+  proposal::Told limits;
+};
+
+/// Tries ways to make the gear. Refused also: what `run` refuses of it, but for a program that is not verified.
+Expected<MadeJob, std::vector<Diagnostic>> make_job(const NewRequest& request, Choice& choice, bool asks) {
   auto proposed = propose(request, choice);
-  if (request.route.empty() && !dialog.asks() && choice.wishes.route == proposal::Route::line &&
-      !is_verified(proposed)) {
+  if (request.route.empty() && !asks && choice.wishes.route == proposal::Route::line && !is_verified(proposed)) {
     choice.wishes.route = proposal::Route::ball;  // nobody asked for the side of a mill
     if (auto other = propose(request, choice); is_verified(other)) proposed = std::move(other);
   }
-  if (auto* errors = proposed.refused()) return failed(std::move(*errors));
+  if (auto* errors = proposed.refused()) return std::move(*errors);
   CommandOutcome& proof = proposed.value().proof;
-  if (proof.exit_code != app::ExitCode::ok && proof.exit_code != app::ExitCode::unverified) {
-    for (Diagnostic& error : proof.errors)
-      if (error.kind != DiagnosticKind::file_access) error.position = {};  // a place in a job that goes again
-    return failed(std::move(proof.errors));
-  }
+  if (proof.exit_code != app::ExitCode::ok && proof.exit_code != app::ExitCode::unverified)
+    return without_places(std::move(proof.errors));
   proposal::Told limits = choice.notes;
   for (const auto& more : {limits_of(choice.wishes), limits_of(choice.gear),
                            limits_of(proposed.value().draft, choice.machine, choice.gear)})
     limits.insert(limits.end(), more.begin(), more.end());
-  if (auto written = app::write_new_file(request.file, proposed.value().text); !written) return failed(written.error());
+  return MadeJob{std::move(proposed.value()), std::move(limits)};
+}
+
+/// Where the job of the mate goes: beside the other.
+std::string mate_file(const std::string& file) {
+  fs::path path(file);
+  return path.replace_filename(path.stem().string() + "_mate" + path.extension().string()).string();
+}
+
+/// The other gear of a bevel pair: teeth exchanged, the other hand.
+Expected<MadeJob, std::vector<Diagnostic>> make_mate(NewRequest request, const Choice& of, bool asks) {
+  Choice choice = of;
+  std::swap(choice.wishes[Quantity::teeth], choice.wishes[Quantity::mate_teeth]);
+  choice.wishes.hand = -of.wishes.hand;
+  request.file = mate_file(request.file), request.name += "_mate";
+  auto gear = proposal::choose_gear(choice.wishes);
+  if (auto* errors = gear.refused()) return std::move(*errors);
+  choice.gear = std::move(gear.value());
+  return make_job(request, choice, asks);
+}
+
+bool has_bevel_mate(const Wishes& wishes) {
+  return wishes.gear == proposal::Gear::bevel_herringbone || wishes.gear == proposal::Gear::straight_bevel ||
+         wishes.drawn();
+}
+
+/// Writes the job of the mate, and tells of both.
+CommandOutcome with_mate(const NewRequest& request, CommandOutcome outcome, const MadeJob& mate) {
+  NewRequest other = request;
+  other.file = mate_file(request.file);
+  if (auto written = app::write_new_file(other.file, mate.proposed.text); !written) return failed(written.error());
+  const CommandOutcome more = told(other, mate.proposed, mate.limits);
+  if (outcome.exit_code == app::ExitCode::ok) outcome.exit_code = more.exit_code;
+  outcome.summary += more.summary + fmt::format("and of both: toothpath contact {} --mate {} --out DIR\n", request.file,
+                                                fs::path(other.file).filename().string());
+  auto json = nlohmann::ordered_json::parse(outcome.report_json);
+  json["mate"] = nlohmann::ordered_json::parse(more.report_json);
+  outcome.report_json = json_text(json, 2) + "\n";
+  return outcome;
+}
+
+CommandOutcome make_and_write(const NewRequest& request, Choice& choice, bool asks) {
+  if (request.with_mate && !has_bevel_mate(choice.wishes))
+    return failed(usage("--with-mate: only bevel gears by their numbers have a mate of their own kind"));
+  PointsBesideJob points;
+  if (auto written = points.write(request.file, choice.wishes); !written) return failed(written.error());
+  auto made = make_job(request, choice, asks);
+  if (auto* errors = made.refused()) return failed(std::move(*errors));
+  std::optional<MadeJob> mate;
+  if (request.with_mate) {
+    auto other = make_mate(request, choice, asks);
+    if (auto* errors = other.refused()) {
+      for (Diagnostic& error : *errors) error.message = "the mate: " + error.message;
+      return failed(std::move(*errors));
+    }
+    mate = std::move(other.value());
+  }
+  if (auto written = app::write_new_file(request.file, made.value().proposed.text); !written)
+    return failed(written.error());
   points.keep();
-  return told(request, proposed.value(), limits);
+  CommandOutcome outcome = told(request, made.value().proposed, made.value().limits);
+  return mate ? with_mate(request, std::move(outcome), *mate) : outcome;
+}
+
+/// The option with which all of these begin, if one was asked for: it is asked for again. Errors of other kinds end.
+bool asked_again(const std::vector<Diagnostic>& errors, Dialog& dialog) {
+  for (const Diagnostic& error : errors) {
+    if (error.kind != DiagnosticKind::refused_input || !error.message.starts_with("--")) continue;
+    if (!dialog.forget(error.message.substr(0, error.message.find_first_of(": =")))) continue;
+    for (const Diagnostic& said : errors) dialog.tell({{"not possible", said.message}});
+    dialog.begin_again();
+    return true;
+  }
+  return false;
+}
+
+/// Goes through the questions until they are answered, back and forth.
+Expected<Choice, std::vector<Diagnostic>> choose_in_dialog(const NewRequest& request, Dialog& dialog) {
+  while (true) {
+    auto chosen = choose(request, dialog);
+    auto* errors = chosen.refused();
+    if (!errors) return chosen;
+    if (dialog.went_back()) dialog.begin_again();
+    else if (!dialog.asks() || !asked_again(*errors, dialog)) return chosen;
+  }
+}
+
+CommandOutcome run_new(const NewRequest& asked) {
+  NewRequest request = asked;
+  if (request.file.empty()) return failed(usage("-o is missing: the job file to write"));
+  std::vector<std::string> files = {request.file};
+  if (request.with_mate) files.push_back(mate_file(request.file));
+  for (const std::string& file : files)
+    if (const auto fresh = app::check_new_file(file, "-o"); !fresh) return failed(fresh.error());
+  if (request.name.empty()) request.name = fs::path(request.file).stem().string();
+  for (const auto& [option, text] : {std::pair("--name", &request.name), {"--machine", &request.machine}})
+    if (const auto named = can_be_named(option, *text); !named) return failed(named.error());
+  const app::KeptAnswers kept(request.file);
+  bool cannot_keep = false;
+  Dialog dialog(request.quiet, proposal::explanation_of, [&](std::span<const app::SaidAnswer> said) {
+    const auto written = kept.write(said);
+    if (!written && !cannot_keep) dialog.tell({{"answers are not kept", written.error().text()}});
+    cannot_keep = !written;
+    app::set_state(written && !said.empty()
+                       ? "the answers are kept in " + kept.path() + ": the same command with --resume goes on with them"
+                       : "");
+  });
+  if (request.resume && !dialog.asks()) return failed(usage("--resume goes on with questions: it needs a terminal"));
+  if (request.resume) {
+    auto said = kept.read();
+    if (!said) return failed(said.error());
+    dialog.begin_again(std::move(*said));
+  } else if (dialog.asks() && kept.there()) {
+    return failed(
+        usage(fmt::format("{} keeps answers to an earlier `new`: --resume goes on with them; to begin anew, "
+                          "delete it",
+                          kept.path())));
+  }
+  auto chosen = choose_in_dialog(request, dialog);
+  if (auto* errors = chosen.refused()) return failed(std::move(*errors));
+  CommandOutcome outcome = make_and_write(request, chosen.value(), dialog.asks());
+  if (dialog.asks() && outcome.errors.empty()) (void)kept.write({});  // one that stays is told of by the next `new`
+  return outcome;
 }
 
 void new_options(OptionSet& set, NewRequest& request) {
@@ -878,12 +1036,16 @@ void new_options(OptionSet& set, NewRequest& request) {
            "WHICH", kFlankWords);
   set.word("--ratio-of-roll", request.ratio_of_roll, "sense of ratio_of_roll where the file leaves it open", "SENSE",
            kRatioWords);
-  set.word("--hand", request.hand, "hand of a spiral bevel gear; without: pinions left, wheels right", "HAND",
-           kHandWords);
+  set.word("--hand", request.hand,
+           "hand of a spiral bevel gear, or of the inner half of a herringbone; without: pinions left, wheels right",
+           "HAND", kHandWords);
   set.number("--dedendum-coefficient", request.dedendum, "of a cylindrical gear whose REXS file has no tool",
              kRackCoefficient);
   set.number("--root-radius-coefficient", request.root_radius, "of the rounding of its rack's tip", kRackCoefficient);
   set.text("--name", request.name, "name of the job; else that of the file", "NAME");
+  set.flag("--with-mate", request.with_mate,
+           "of a bevel gear by its numbers: the job of its mate, too, as JOB_mate.toml beside it");
+  set.flag("--resume", request.resume, "goes on with the answers of a `new` on a terminal that ended before its job");
   set.text("-o", request.file, "the job file to write; an existing one is not replaced", "JOB.toml");
 }
 

@@ -70,6 +70,7 @@ bevel_gear::BevelGearParameters bevel_parameters(const Wishes& wishes) {
   p.relief_half_width_mm = std::round(100 * 0.55 * m) / 100;
   p.addendum_mm = std::round(100 * 0.65 * m) / 100;
   p.dedendum_mm = std::round(100 * 0.82 * m) / 100;
+  p.hand = wishes.hand < 0 ? -1 : 1;
   return p;
 }
 

@@ -117,7 +117,7 @@ std::string bevel_text(const Wishes& wishes) {
   text += line("outer_spiral_angle", real(wishes.at(Quantity::spiral)));
   text += line("face_width", real(p.face_width_mm));
   text += line("form", "\"herringbone\"", "or \"single\"");
-  text += line("hand", "\"right\"", "of the inner half");
+  text += line("hand", wishes.hand < 0 ? "\"left\"" : "\"right\"", "of the inner half; the mate has the other");
   text += line("apex_cone_distance", real(p.apex_cone_distance_mm), "where the halves meet");
   text += line("relief_half_width", real(p.relief_half_width_mm), "turned groove there, to root depth");
   text += line("addendum", real(p.addendum_mm));

@@ -77,7 +77,7 @@ struct Wishes {
   std::optional<Route> route;
   std::string machine;  ///< as a job names it
   std::array<std::optional<double>, kQuantities> numbers{};
-  int hand = 0;  ///< of a spiral bevel gear by a drawing: 1 right, -1 left
+  int hand = 0;  ///< of a spiral bevel gear by a drawing, of the inner half of a herringbone: 1 right, -1 left
 
   // Gears whose numbers stand in a file.
   std::shared_ptr<const cylindrical::CylindricalParameters> cylinder = {};

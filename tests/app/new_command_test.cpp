@@ -104,8 +104,32 @@ INSTANTIATE_TEST_SUITE_P(
         gear("straight_bevel", "ball", "xyzac_trt", {"--teeth", "20", "--mate-teeth", "40", "--module", "2"}),
         gear("straight_bevel", "line", "head_table_bc", {"--teeth", "30", "--mate-teeth", "20", "--module", "2"}),
         gear("bevel_herringbone", "finger", "fanuc_ac", {"--teeth", "18", "--mate-teeth", "27", "--module", "2"}),
-        gear("bevel_herringbone", "finger", "m80_ac", {"--teeth", "24", "--mate-teeth", "36", "--module", "3.4"}),
-        gear("bevel_herringbone", "finger", "xyzbc_trt", {"--teeth", "18", "--mate-teeth", "27", "--module", "2"})));
+        gear("bevel_herringbone", "finger", "m80_ac", {"--teeth", "24", "--mate-teeth", "36", "--module", "3.4"})));
+
+/// Both gears of a pair roll together: teeth exchanged, the other hand.
+TEST(New, WritesTheJobOfTheMateToo) {
+  const TestDir dir;
+  Words words =
+      gear("bevel_herringbone", "finger", "xyzbc_trt", {"--teeth", "18", "--mate-teeth", "27", "--module", "2"});
+  words.push_back("--with-mate");
+  const std::string pinion = dir / "job.toml", wheel = dir / "job_mate.toml";
+  const Finished made = run_new(words, pinion);
+  ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
+  const auto report = nlohmann::json::parse(made.out)["report"];
+  EXPECT_EQ(report["verified"], true);
+  EXPECT_EQ(report["mate"]["verified"], true);
+  EXPECT_NE(file_text(pinion).find("hand = \"left\""), std::string::npos);
+  const std::string mate = file_text(wheel);
+  EXPECT_NE(mate.find("hand = \"right\""), std::string::npos) << mate;
+  EXPECT_NE(mate.find("teeth = 27\nmate_teeth = 18\n"), std::string::npos) << mate;
+  const Finished contact = run_program({"contact", pinion, "--mate", wheel, "--out", dir / "out", "--json"});
+  EXPECT_EQ(contact.exit_code, 0) << contact.err;
+
+  const Finished none =
+      run_new(gear("face", "shaped", "y514", {"--teeth", "53", "--module", "2", "--with-mate"}), dir / "face.toml");
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_NE(none.err.find("--with-mate: only bevel gears"), std::string::npos) << none.err;
+}
 
 /// Gears that nobody chose: verified, or refused with the option that would help.
 TEST(New, RandomGearsAreVerifiedOrRefusedByTheirOption) {
@@ -298,8 +322,9 @@ TEST(New, WithoutAFolderForTriesNothingIsWritten) {
   EXPECT_TRUE(names_in(dir.path()).empty());
 }
 
-/// What a terminal shows while these lines are typed.
-std::string on_terminal(const Words& words, const std::string& typed, int& exit_code) {
+/// What a terminal shows while these lines are typed, and `then`, once it shows `when`.
+std::string on_terminal(const Words& words, const std::string& typed, int& exit_code, std::string when = {},
+                        const std::string& then = {}) {
   int master = -1;
   const pid_t child = ::forkpty(&master, nullptr, nullptr, nullptr);
   if (child == 0) {
@@ -312,8 +337,12 @@ std::string on_terminal(const Words& words, const std::string& typed, int& exit_
   EXPECT_EQ(::write(master, typed.data(), typed.size()), static_cast<ssize_t>(typed.size()));
   std::string shown;
   char buffer[4096];
-  for (ssize_t n = 0; (n = ::read(master, buffer, sizeof buffer)) > 0;)
+  for (ssize_t n = 0; (n = ::read(master, buffer, sizeof buffer)) > 0;) {
     shown.append(buffer, static_cast<std::size_t>(n));
+    if (when.empty() || shown.find(when) == std::string::npos) continue;
+    EXPECT_EQ(::write(master, then.data(), then.size()), static_cast<ssize_t>(then.size()));
+    when.clear();
+  }
   int status = 0;
   ::waitpid(child, &status, 0);
   ::close(master);
@@ -345,6 +374,77 @@ TEST(New, AsksOnATerminalAndShowsLimitsBeforeTheEndsOfTheTeeth) {
   EXPECT_LT(travels, shown.find("room in travels: X ")) << shown;
   EXPECT_LT(travels, shown.find("distance index")) << "before anything is planned\n" << shown;
   EXPECT_NE(file_text(dir / "job.toml").find("teeth = 60\n"), std::string::npos);
+}
+
+/// A face gear for a shaper is soon tried: its questions are --teeth, --shaper-teeth, --module, --pressure-angle,
+/// --helix,
+/// --tip-radius, --inner, --outer.
+Words shaped_face_gear(const std::string& file) {
+  return {TOOTHPATH_BINARY, "new", "--gear", "face", "--cut", "shaped", "--machine", "y514", "-o", file};
+}
+
+TEST(New, ExplainsGoesBackAndAsksAgainForWhatCannotBeMade) {
+  const TestDir dir;
+  int exit_code = -1;
+  const std::string shown = on_terminal(shaped_face_gear(dir / "job.toml"),
+                                        "<\n?\n43\n<\n53\n\n2,0\n2 inch\n 2 mm \n\n\n\n\n90\n\n", exit_code);
+  EXPECT_EQ(exit_code, 0) << shown;
+  EXPECT_NE(shown.find("this is the first question"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("Of the gear that is cut here, not of its mate (option --teeth;"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("= 2,0: a comma is not read"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("2 inch is not a number from 0.3 to 20 mm"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("not possible: --outer: "), std::string::npos) << "the teeth are pointed before 90\n" << shown;
+  const std::string text = file_text(dir / "job.toml");
+  EXPECT_NE(text.find("\nteeth = 53\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nmodule = 2.0"), std::string::npos) << text;
+  EXPECT_EQ(names_in(dir.path()).size(), 1U) << "the answers are kept no longer than they are needed";
+}
+
+TEST(New, AnswersOutliveCtrlC) {
+  const TestDir dir;
+  const std::string file = dir / "job.toml", kept = file + ".answers";
+  int exit_code = -1;
+  std::string shown = on_terminal(shaped_face_gear(file), "53\n\n2\n", exit_code, "pressure angle (", "\x03");
+  EXPECT_EQ(exit_code, 130) << shown;
+  EXPECT_NE(shown.find("interrupted: the answers are kept in "), std::string::npos) << shown;
+  EXPECT_EQ(file_text(kept),
+            "# answers to `toothpath new`: the same command with --resume goes on with them\n"
+            "--teeth\t53\n--shaper-teeth\t\n--module\t2\n");
+  shown = on_terminal(shaped_face_gear(file), "", exit_code);
+  EXPECT_EQ(exit_code, 2) << shown;
+  EXPECT_NE(shown.find("job.toml.answers keeps answers to an earlier `new`: --resume goes on"), std::string::npos)
+      << shown;
+  Words resume = shaped_face_gear(file);
+  resume.push_back("--resume");
+  shown = on_terminal(resume, "\n\n\n\n\n", exit_code);
+  EXPECT_EQ(exit_code, 0) << shown;
+  EXPECT_EQ(shown.find("teeth of the gear"), std::string::npos) << "it was said\n" << shown;
+  EXPECT_NE(file_text(file).find("\nteeth = 53\n"), std::string::npos);
+  EXPECT_EQ(names_in(dir.path()).size(), 1U);
+}
+
+TEST(New, WhatAreNoAnswersIsRefusedAndStays) {
+  const TestDir dir;
+  const std::string file = dir / "job.toml", kept = file + ".answers";
+  Words resume = shaped_face_gear(file);
+  resume.push_back("--resume");
+  int exit_code = -1;
+  std::string shown = on_terminal(resume, "", exit_code);
+  EXPECT_EQ(exit_code, 4) << shown;
+  for (const std::string& damaged :
+       {std::string("somebody's letter\n"),
+        std::string("# answers to `toothpath new`: the same command with --resume goes on with them\n--teeth 53\n")}) {
+    write_file(kept, damaged);
+    shown = on_terminal(resume, "53\n", exit_code);
+    EXPECT_EQ(exit_code, 3) << shown;
+    EXPECT_NE(shown.find("job.toml.answers:"), std::string::npos) << shown;
+    EXPECT_EQ(file_text(kept), damaged);
+  }
+  resume.front() = "new";
+  resume.erase(resume.begin() + 1);
+  const Finished without = run_program(resume);
+  EXPECT_EQ(without.exit_code, 2);
+  EXPECT_NE(without.err.find("--resume goes on with questions: it needs a terminal"), std::string::npos) << without.err;
 }
 
 TEST(New, TakesTheToolsOfAnotherJob) {
@@ -407,6 +507,23 @@ TEST(New, NamesEveryTravelThatIsTooShort) {
   EXPECT_NE(made.err.find(" needed of 40): a smaller gear, a shorter tool, or a machine that travels farther"),
             std::string::npos)
       << made.err;
+}
+
+TEST(New, OffersTheMachineBesideTheJobFirst) {
+  const TestDir dir;
+  const std::string small = changed_machine(dir, "max_speed = 20000", "max_speed = 19000");
+  write_file(dir / "other_job.toml", file_text(kSamples + "/spur_quick.toml"));
+  for (const std::string answer : {"", "small", "small.toml", "./small.toml"}) {
+    int exit_code = -1;
+    const std::string shown = on_terminal({TOOTHPATH_BINARY, "new", "-o", dir / "job.toml"},
+                                          "face\nball\nsmal\n" + answer + "\n\x04", exit_code);
+    EXPECT_EQ(exit_code, 2) << "the answers end behind it\n" << shown;
+    EXPECT_NE(shown.find("machines beside the job: small\r\n"), std::string::npos) << shown;
+    EXPECT_NE(shown.find("machine: the name or the path of its file [small]: "), std::string::npos) << shown;
+    EXPECT_NE(shown.find("did you mean \"small\"?"), std::string::npos) << shown;
+    EXPECT_NE(shown.find("largest part that turns: 250 mm"), std::string::npos) << answer << shown;
+    std::filesystem::remove(dir / "job.toml.answers");
+  }
 }
 
 TEST(New, FindsAMachineBesideTheJob) {
