@@ -118,7 +118,9 @@ DoneOrErrors ask_machine(Wishes& wishes, const NewRequest& request, Dialog& dial
     tried.machine = answer;
     const auto machine = proposal::choose_machine(tried, parent.string());
     const auto* errors = machine.refused();
-    return errors ? std::optional(errors->front().text()) : std::nullopt;
+    if (!errors) return std::nullopt;
+    const Diagnostic& first = errors->front();
+    return first.position.file.empty() ? first.message : first.text();
   };
   const auto machine = dialog.text("--machine", "machine: the name or the path of its file",
                                    own.size() == 1 ? std::optional(own.front()) : std::nullopt, judge);

@@ -520,7 +520,7 @@ TEST(New, OffersTheMachineBesideTheJobFirst) {
     EXPECT_EQ(exit_code, 2) << "the answers end behind it\n" << shown;
     EXPECT_NE(shown.find("machines beside the job: small\r\n"), std::string::npos) << shown;
     EXPECT_NE(shown.find("machine: the name or the path of its file [small]: "), std::string::npos) << shown;
-    EXPECT_NE(shown.find("did you mean \"small\"?"), std::string::npos) << shown;
+    EXPECT_NE(shown.find("machine file \"smal\" is neither beside the job nor installed"), std::string::npos) << shown;
     EXPECT_NE(shown.find("largest part that turns: 250 mm"), std::string::npos) << answer << shown;
     std::filesystem::remove(dir / "job.toml.answers");
   }
