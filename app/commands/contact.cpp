@@ -68,23 +68,23 @@ struct Mate {
 process::ValueOrErrors<std::optional<Mate>> mate_of(const ContactRequest& request, const job::Job& job,
                                                     const process::GearProcess& gear, app::StageClock& clock) {
   std::optional<Mate> out;
-  if (job.bevel_gear() != nullptr && (request.shaft_angle_deg || request.axis_distance_mm))
+  if (!request.other_job.empty()) {
+    auto read = clock.run("mate", [&] { return job::read_job_file(request.other_job); });
+    if (auto* errors = read.refused()) return std::move(*errors);
+    out.emplace(Mate{std::make_unique<const job::Job>(std::move(read).value()), nullptr, {}});
+  }
+  const bool bevels = job.bevel_gear() != nullptr && (!out || out->job->bevel_gear() != nullptr);
+  if (bevels && (request.shaft_angle_deg || request.axis_distance_mm))
     return std::vector{fail_at(job.where("gear.type"),
                                "type = \"{}\" rolls on the shafts that it was made for: leave out {}", job.gear_type(),
                                request.shaft_angle_deg ? "--shaft-angle" : "--axis-distance")};
-  if (request.other_job.empty() || job.bevel_gear() != nullptr) {
+  if (!out || bevels) {
     if (auto accepted = gear.accepts(request); !accepted) return std::vector{accepted.error()};
-    return out;
+    return std::optional<Mate>();
   }
-  auto read = clock.run("mate", [&] { return job::read_job_file(request.other_job); });
-  if (auto* errors = read.refused()) return std::move(*errors);
-  out.emplace(Mate{std::make_unique<const job::Job>(std::move(read).value()), nullptr, {}});
   auto made = flow::make_gear(*out->job, {}, clock);
   if (auto* errors = made.refused()) return std::move(*errors);
   out->gear = std::move(made.value().process);
-  if (out->job->bevel_gear() != nullptr)
-    return std::vector{
-        fail_at(out->job->where("gear.type"), "type = \"{}\" rolls with its own type alone", out->job->gear_type())};
   auto shafts = toothed_pair::accepted({job, gear.toothed()}, {*out->job, out->gear->toothed()}, request);
   if (auto* errors = shafts.refused()) return std::move(*errors);
   out->shafts = shafts.value();

@@ -219,6 +219,36 @@ TEST(ContactCommand, AMeasuredFlankRollsWithTheMateOfAnotherJob) {
   EXPECT_NEAR(error(0, "mean_urad") - error(2, "mean_urad"), 1e4 / (36 * std::cos(20 * std::acos(-1) / 180)), 1e-2);
 }
 
+/// An equal-base-circle gear rolls by the rules of its pair, and the same mate given by its points as any two gears
+/// do: both ways find one transmission error on wall U. The grid of points keeps off the edges, where wall L bears.
+TEST(ContactCommand, AnEqualBaseCircleGearRollsWithItsMateByPoints) {
+  const TestDir dir;
+  const std::string pinion = kSamples + "/bevel_ball.toml";
+  write_file(dir / "wheel.toml",
+             replaced(replaced(file_text(pinion), "teeth = 18\nmate_teeth = 37", "teeth = 37\nmate_teeth = 18"),
+                      "hand = \"right\"", "hand = \"left\""));
+  ASSERT_EQ(run_program({"surface", dir / "wheel.toml", "--out", dir / "surface"}).exit_code, 0);
+  std::string points = file_text(dir / "surface/inspection.csv");
+  for (const auto& [wall, flank] : {std::pair("\n0,L,", "\n0,1,"), {"\n0,U,", "\n0,-1,"}})
+    for (std::size_t at; (at = points.find(wall)) != std::string::npos;)
+      points.replace(at, std::string_view(wall).size(), flank);
+  write_file(dir / "points.csv", points);
+  ASSERT_EQ(run_program({"new", "--points", dir / "points.csv", "--teeth", "37", "--machine", "xyzac_large", "-o",
+                         dir / "grid.toml"})
+                .exit_code,
+            0);
+  const Json own = contact_of({"contact", pinion, "--mate", dir / "wheel.toml", "--out", dir / "own"}),
+             any = contact_of(
+                 {"contact", pinion, "--mate", dir / "grid.toml", "--shaft-angle", "90", "--out", dir / "any"});
+  const double of_pinion = own.at("walls")[1].at("transmission_error_urad").get<double>(),
+               of_wheel = any.at("flanks")[1].at("transmission_error").at("range_urad").get<double>();
+  EXPECT_NEAR(of_wheel, of_pinion * 18 / 37, 0.05 * of_wheel);
+  const Finished measured = run_program({"contact", pinion, "--mate", dir / "grid.toml", "--shaft-angle", "90",
+                                         "--measured", dir / "points.csv", "--out", dir / "measured"});
+  EXPECT_EQ(measured.exit_code, 3);
+  EXPECT_NE(measured.err.find("measured walls roll with a mate of this type alone"), std::string::npos) << measured.err;
+}
+
 /// What two jobs do not say, and what such pairs do not have, with the place.
 TEST(ContactCommand, TwoJobsThatDoNotRoll) {
   const TestDir dir;
@@ -235,7 +265,18 @@ TEST(ContactCommand, TwoJobsThatDoNotRoll) {
       {3, {spur, "--mate", cone}, "does not run with a"},
       {3, {spiral, "--mate", cone}, "do not roll on each other with"},
       {3, {grid, "--mate", cone}, "--shaft-angle DEG is needed"},
-      {3, {spiral, "--mate", kSamples + "/bevel_wheel.toml"}, "rolls with its own type alone"},
+      {3, {spiral, "--mate", spiral}, "add up to 36.86667 deg, the shafts stand at 90 deg"},
+      {3, {spiral, "--mate", kSamples + "/bevel_wheel.toml"}, "do not roll on each other with"},
+      {3, {kSamples + "/bevel_wheel.toml", "--mate", spur}, "does not run with a"},
+      {3,
+       {kSamples + "/spur_quick.toml", "--mate", spur},
+       "the normal base pitch, 8.85639 mm, is not that of the face gear, 5.90426 mm"},
+      {3,
+       {kSamples + "/dhfg_paper.toml", "--mate", spur},
+       "no zone has a helix_angle of -30 deg, that of zone 0 of the face gear"},
+      {3,
+       {kSamples + "/dhfg_paper.toml", "--mate", kSamples + "/cylindrical_pinion.toml", "--torque", "100"},
+       "leave out --mate, --pinion-teeth 30 is that pinion"},
       {3, {kSamples + "/dhfg_paper.toml", "--mate", cone}, "does not run with a face gear"},
       {3,
        {kSamples + "/dhfg_paper.toml", "--mate", kSamples + "/cylindrical_pinion.toml", "--shaft-angle", "90"},

@@ -272,8 +272,6 @@ process::ValueOrErrors<bevel_gear::BevelGear> mate_of(const process::ContactAske
   auto read = job::read_job_file(request.other_job);
   if (auto* errors = read.refused()) return std::move(*errors);
   const job::Job& other = read.value();
-  if (other.bevel_gear() == nullptr)
-    return std::vector{fail_at(other.where("gear.type"), "the mate is no equal-base-circle bevel gear")};
   name = request.other_job;
   return process::make_bevel_gear(other);
 }

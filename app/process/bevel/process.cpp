@@ -135,6 +135,13 @@ class BevelProcess : public milled::ToothedProcess {
         "no field of deviations; a [[gear.modification]] with a grid that is a sum over depth and face does",
         job().gear_type());
   }
+  [[nodiscard]] process::ValueOrErrors<process::CutFlanks> measured(const job::MeasuredInput&) const override {
+    return std::vector{
+        fail_at(job().where("gear.type"),
+                "type = \"{}\": measured walls roll with a mate of this type alone: leave out --measured, "
+                "or --mate",
+                job().gear_type())};
+  }
   [[nodiscard]] std::unique_ptr<inspection::TouchedPart> touched() const override {
     return std::make_unique<inspection::TouchedBevelGear>(part_);
   }

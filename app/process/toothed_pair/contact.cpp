@@ -137,9 +137,12 @@ process::ValueOrErrors<Shafts> accepted(const JobGear& job, const JobGear& mate,
         fail_at(job.job.where("gear.type"), "type = \"{}\" with --mate: {}", job.job.gear_type(), message)};
   };
   if (asked.torque_Nm || !asked.ccx_dir.empty() || (job.job.contact && job.job.contact->load))
-    return refuse(
+    return refuse(fmt::format(
         "no load is rolled, because there is no elastic model of such pairs; face gears with the pinion of their "
-        "shaper and equal_base_circle_bevel_gear pairs have one");
+        "shaper and equal_base_circle_bevel_gear pairs have one{}",
+        job.job.face_gear() && mate.job.cylindrical_gear()
+            ? fmt::format(": leave out --mate, --pinion-teeth {} is that pinion", mate.part->teeth())
+            : ""));
   if (asked.optimise)
     return refuse("--optimise knows face gears with the pinion of their shaper and equal_base_circle_bevel_gear pairs");
   if (asked.pinion_teeth) return refuse("--pinion-teeth contradicts the mate, which has its own");
@@ -164,7 +167,8 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const JobGear& job, cons
   rolls.options.compound_mm = a.settings.compound_mm;
   rolls.options.steps = 32;
   const auto modified = [](const job::Job& of) {
-    return !of.modifications.empty() || (of.face_gear() != nullptr && !of.face_gear()->modifications.empty());
+    return !of.modifications.empty() || (of.face_gear() != nullptr && !of.face_gear()->modifications.empty()) ||
+           (of.bevel_gear() != nullptr && !of.bevel_gear()->modifications.empty());
   };
   rolls.modified = modified(job.job) || modified(mate.job);
   auto done = clock.run("contact", [&]() -> Status {

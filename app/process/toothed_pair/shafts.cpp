@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "geometry/base/angle.h"
+#include "geometry/bevel_gear/limits.h"
 #include "geometry/face_gear/space_sheet.h"
 
 namespace toothpath::toothed_pair {
@@ -41,6 +42,9 @@ std::optional<Cone> cone_of(const job::Job& job) {
   if (const auto* g = job.straight_bevel_gear()) return Cone{g->pitch_angle_rad, std::nullopt};
   if (const auto* g = std::get_if<spiral_bevel::SpiralBevelParameters>(&job.gear))
     return Cone{g->pitch_angle_rad, g->shaft_angle_rad};
+  if (const auto* g = job.bevel_gear())
+    return Cone{bevel_gear::bevel_pitch_angle(*g),
+                g->mate_teeth > 0 ? std::optional(g->shaft_angle_rad) : std::nullopt};
   if (std::holds_alternative<flank_grid::FlankGridParameters>(job.gear)) return Cone{};
   return std::nullopt;
 }
@@ -49,12 +53,44 @@ std::optional<Cone> cone_of(const job::Job& job) {
 struct Rolling {
   double radius_mm = 0, base_mm = 0, shift_mm = 0, helix_rad = 0;
   double base_helix_rad = 0;
+  [[nodiscard]] double normal_base_pitch(int teeth) const {
+    return kTwoPi * base_mm / teeth * std::cos(base_helix_rad);
+  }
 };
-Rolling rolling_of(const cylindrical::CylindricalParameters& p) {
-  const double beta = p.zones.front().helix_angle_rad,
-               wide = p.module_plane == ModulePlane::normal ? 1 / std::cos(beta) : 1;
-  const double r = 0.5 * p.module_mm * wide * p.teeth, alpha = std::atan(std::tan(p.pressure_angle_rad) * wide);
-  return {r, r * std::cos(alpha), p.profile_shift * p.module_mm, beta, std::atan(std::tan(beta) * std::cos(alpha))};
+/// Of a cylindrical gear, or of the shaper of a face gear.
+template <typename P>
+Rolling rolling_of(const P& p, int teeth, double beta, double shift_mm) {
+  const double wide = p.module_plane == ModulePlane::normal ? 1 / std::cos(beta) : 1;
+  const double r = 0.5 * p.module_mm * wide * teeth, alpha = std::atan(std::tan(p.pressure_angle_rad) * wide);
+  return {r, r * std::cos(alpha), shift_mm, beta, std::atan(std::tan(beta) * std::cos(alpha))};
+}
+Rolling rolling_of(const cylindrical::CylindricalParameters& p, std::size_t zone = 0) {
+  return rolling_of(p, p.teeth, p.zones[zone].helix_angle_rad, p.profile_shift * p.module_mm);
+}
+
+/// A face gear runs with what its shaper would run with: every zone has one of the pinion.
+std::optional<Diagnostic> refused_pinion(const JobGear& face, const JobGear& pinion) {
+  const auto& f = *face.job.face_gear();
+  const auto& p = *pinion.job.cylindrical_gear();
+  for (std::size_t k = 0; k < f.zones.size(); ++k) {
+    const Rolling shaper = rolling_of(f, f.shaper_teeth, f.zones[k].helix_angle_rad, 0);
+    std::optional<std::size_t> along;
+    for (std::size_t n = 0; n < p.zones.size(); ++n)
+      if (std::abs(p.zones[n].helix_angle_rad - shaper.helix_rad) < kBesideParallel) along = n;
+    if (!along)
+      return fail_at(pinion.job.where("gear.zone"),
+                     "no zone has a helix_angle of {:g} deg, that of zone {} of the face gear and of its shaper",
+                     degrees(shaper.helix_rad), k);
+    const double wanted = shaper.normal_base_pitch(f.shaper_teeth),
+                 pitch = rolling_of(p, *along).normal_base_pitch(p.teeth);
+    if (std::abs(pitch - wanted) > kFits * wanted)
+      return fail_at(
+          pinion.job.where("gear.module"),
+          "the normal base pitch, {:.5f} mm, is not that of the face gear, {:.5f} mm: module, pressure angle "
+          "and helix angle must be those of its shaper",
+          pitch, wanted);
+  }
+  return {};
 }
 
 /// The distance at which thicknesses and spaces of the drawings, without allowances, leave no backlash.
@@ -85,7 +121,7 @@ process::ValueOrErrors<Shafts> cylinders(const JobGear& gear, const JobGear& pin
                            *asked.shaft_angle_deg)};
   // On parallel shafts both helices have one lead a base pitch; on crossed ones normal base pitches do it.
   const auto base_pitch = [&](const Rolling& r, const JobGear& of) {
-    return kTwoPi * r.base_mm / of.part->teeth() * (out.skew ? std::cos(r.base_helix_rad) : 1);
+    return out.skew ? r.normal_base_pitch(of.part->teeth()) : kTwoPi * r.base_mm / of.part->teeth();
   };
   const double pitch_a = base_pitch(a, gear), pitch_b = base_pitch(b, pinion);
   if (std::abs(pitch_a - pitch_b) > kFits * pitch_a)
@@ -137,7 +173,17 @@ process::ValueOrErrors<Shafts> crossing(const JobGear& gear, const JobGear& pini
                   "pitch angles {:.5f} and {:.5f} deg do not roll on each other with {} and {} teeth: the sines must "
                   "be as the teeth",
                   degrees(*b.pitch_angle_rad), degrees(*a.pitch_angle_rad), pinion.part->teeth(), gear.part->teeth())};
+    if (const double sum = *a.pitch_angle_rad + *b.pitch_angle_rad; std::abs(sum - out.angle_rad) > kBesideParallel)
+      return Refused{fail_at(pinion.job.where("gear.pitch_angle"),
+                             "pitch angles {:.5f} and {:.5f} deg add up to {:.5f} deg, the shafts stand at {:g} deg",
+                             degrees(*b.pitch_angle_rad), degrees(*a.pitch_angle_rad), degrees(sum),
+                             degrees(out.angle_rad))};
   }
+  const auto *spiral = gear.job.spiral_bevel_gear(), *with = pinion.job.spiral_bevel_gear();
+  if (spiral && with && spiral->hand == with->hand)
+    return Refused{fail_at(pinion.job.where("gear.hand"),
+                           "hand = \"{}\" is that of the mate, too: teeth that mesh from outside have both hands",
+                           with->hand > 0 ? "right" : "left")};
   return out;
 }
 
@@ -160,6 +206,8 @@ process::ValueOrErrors<Shafts> shafts_of(const JobGear& job, const JobGear& mate
     if (asked.shaft_angle_deg || asked.axis_distance_mm)
       return Refused{fail_at(gear.job.where("gear"),
                              "--shaft-angle and --axis-distance: the face gear says them, as shaft_angle and offset")};
+    if (cylinder)
+      if (auto refused = refused_pinion(gear, pinion)) return Refused{std::move(*refused)};
     out.angle_rad = gear.job.face_gear()->shaft_angle_rad;
     out.distance_mm = gear.job.face_gear()->offset_mm;
     out.place = on_face_gear;
