@@ -41,31 +41,23 @@ class Problem {
   /// One minimisation over these parameters, from where the rows stand; they stand at its end then.
   /// Refused: a place with nothing to begin from.
   [[nodiscard]] Status solve(const std::vector<std::size_t>& over) {
+    if (auto done = run(over); !done) return done;
+    // A number that comes to its bound cuts the steps of all short: the others go on without it.
+    std::vector<std::size_t> inside;
+    for (const std::size_t k : over)
+      if (!at_bound(parameters[k])) inside.push_back(k);
+    if (!inside.empty() && inside.size() < over.size())
+      if (auto done = run(inside); !done) return done;
     over_ = over;
-    std::vector<double> x(over.size(), 0), low, high;
     from_ = values();
-    for (const std::size_t k : over) {
-      const Parameter& p = parameters[k];
-      low.push_back(std::min(0.0, (p.row.low - from_[k]) / p.reach));
-      high.push_back(std::max(0.0, (p.row.high - from_[k]) / p.reach));
-    }
-    residuals.resize(Eigen::Index(placing.points.size()));
-    if (!evaluate(x.data(), residuals.data(), nullptr)) return fail("no flank passes by all of these points");
-    if (over.empty()) return Ok{};
-    LeastSquares least{
-        int(over.size()), int(placing.points.size()), x.data(), low.data(), high.data(), &Problem::asked, this,
-        kMostSteps};
-    if (auto done = minimise(least); !done) return done;
-    steps += least.steps;
-    if (!least.settled)
-      return fail("no least sum of squares is found in {} steps: fewer free numbers, or closer bounds", kMostSteps);
+    const std::vector<double> here(over.size(), 0);
     jacobian.resize(residuals.size(), Eigen::Index(over.size()));
-    if (!evaluate(x.data(), residuals.data(), jacobian.data())) return fail("the flanks go where the fit ends");
-    for (std::size_t k = 0; k < over.size(); ++k) {
-      Parameter& p = parameters[over[k]];
-      p.row.value = std::clamp(from_[over[k]] + x[k] * p.reach, p.row.low, p.row.high);
-    }
+    if (!over.empty() && !evaluate(here.data(), residuals.data(), jacobian.data()))
+      return fail("the flanks go where the fit ends");
     return Ok{};
+  }
+  static bool at_bound(const Parameter& p) {
+    return std::min(p.row.value - p.row.low, p.row.high - p.row.value) < kAtBound * p.reach;
   }
 
   [[nodiscard]] std::vector<double> values() const {
@@ -94,6 +86,32 @@ class Problem {
 
  private:
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  [[nodiscard]] Status run(const std::vector<std::size_t>& over) {
+    over_ = over;
+    std::vector<double> x(over.size(), 0), low, high;
+    from_ = values();
+    for (const std::size_t k : over) {
+      const Parameter& p = parameters[k];
+      low.push_back(std::min(0.0, (p.row.low - from_[k]) / p.reach));
+      high.push_back(std::max(0.0, (p.row.high - from_[k]) / p.reach));
+    }
+    residuals.resize(Eigen::Index(placing.points.size()));
+    if (!evaluate(x.data(), residuals.data(), nullptr)) return fail("no flank passes by all of these points");
+    if (over.empty()) return Ok{};
+    LeastSquares least{
+        int(over.size()), int(placing.points.size()), x.data(), low.data(), high.data(), &Problem::asked, this,
+        kMostSteps};
+    if (auto done = minimise(least); !done) return done;
+    steps += least.steps;
+    if (!least.settled)
+      return fail("no least sum of squares is found in {} steps: fewer free numbers, or closer bounds", kMostSteps);
+    for (std::size_t k = 0; k < over.size(); ++k) {
+      Parameter& p = parameters[over[k]];
+      p.row.value = std::clamp(from_[over[k]] + x[k] * p.reach, p.row.low, p.row.high);
+    }
+    return Ok{};
+  }
 
   static bool asked(void* who, const double* x, double* residuals, double* jacobian) {
     return static_cast<Problem*>(who)->evaluate(x, residuals, jacobian);
@@ -278,9 +296,9 @@ void note_deviations(Problem& problem, const std::vector<std::size_t>& over) {
   for (std::size_t k = 0; k < over.size(); ++k) {
     const Parameter& p = problem.parameters[over[k]];
     Row& row = problem.parameters[over[k]].row;
-    const bool at_bound = std::min(row.value - row.low, row.high - row.value) < kAtBound * p.reach;
-    row.end = at_bound ? End::at_bound : End::determined;
-    if (!at_bound) inside.push_back(Eigen::Index(k));
+    const bool bound = Problem::at_bound(p);
+    row.end = bound ? End::at_bound : End::determined;
+    if (!bound) inside.push_back(Eigen::Index(k));
   }
   if (inside.empty()) return;
   const Combinations c = combinations_of(problem, inside);

@@ -426,6 +426,19 @@ TEST(Fit, ABoundThatStopsTheFitIsNamed) {
   EXPECT_EQ(row(*fitted, "profile_shift").value, 0.15);
 }
 
+/// A face gear without backlash, which begins and ends at the least there is.
+TEST(Fit, ANumberAtItsBoundHoldsNoOtherBack) {
+  const std::string text = sample("offset_milled.toml");
+  const job::Job truth = job_of(text),
+                 start = job_of(with(
+                     text, {{"offset = 15.0", "offset = 14.97"}, {"pressure_angle = 20.0", "pressure_angle = 20.05"}}));
+  const auto fitted = fit::fit_gear(start, points_of(truth), {});
+  ASSERT_TRUE(fitted) << fitted.error().text();
+  SCOPED_TRACE(told(*fitted));
+  EXPECT_LT(fitted->after.worst_mm, 1e-8);
+  EXPECT_NEAR(row(*fitted, "offset").value, 15, 1e-5);
+}
+
 /// Lines `x y z i j k`.
 std::string listed(const job::LoosePoints& points) {
   std::string text;
