@@ -208,7 +208,7 @@ class RoughingPlanner {
   /// First and last points of the stretches in which a ball along these centres removes what earlier operations left:
   /// all of it where there were none.
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> cutting_stretches(
-      const std::vector<BallPass::Point>& points) const {
+      const std::vector<BallPass::Point>& points) {
     if (cleared_.empty()) return {{0, points.size() - 1}};
     std::vector<std::pair<std::size_t, std::size_t>> out;
     double idle = INFINITY;  // way since the last stretch
@@ -225,8 +225,9 @@ class RoughingPlanner {
     return out;
   }
 
-  [[nodiscard]] bool cuts(const Vec3& from, const Vec3& to, double way) const {
+  [[nodiscard]] bool cuts(const Vec3& from, const Vec3& to, double way) {
     static const std::vector<Vec3> directions = lower_directions();
+    answered_.resize(directions.size() * cleared_.size(), SIZE_MAX);
     const auto& ring = sheet_.space().outline();
     const double worth = path::kSkinShare * 2 * o_.ball_radius_mm;
     const int places = std::max(1, int(std::ceil(way / (0.4 * o_.ball_radius_mm))));
@@ -237,12 +238,13 @@ class RoughingPlanner {
         const double at = azimuth(centre);
         down << chart().along_at(at), Vec3(-std::sin(at), std::cos(at), 0), chart().up_at(at);
       }
-      for (const auto& direction : directions) {
-        const Vec3 q = centre + o_.ball_radius_mm * (down * direction);
+      for (std::size_t d = 0; d < directions.size(); ++d) {
+        const Vec3 q = centre + o_.ball_radius_mm * (down * directions[d]);
         const double s = chart().along(q);
         if (s < ring.s_from || s > ring.s_to || chart().up(q) > o_.blank_top_mm) continue;
+        std::size_t* answered = &answered_[d * cleared_.size()];
         if (std::none_of(cleared_.begin(), cleared_.end(),
-                         [&](const cut::Removed* removed) { return removed->comes_within(q, worth); }))
+                         [&](const cut::Removed* removed) { return removed->comes_within(q, worth, answered++); }))
           return true;
       }
     }
@@ -255,6 +257,8 @@ class RoughingPlanner {
   double from_ = 0, to_ = 0;
   std::vector<Walls> walls_;  ///< one a station
   std::size_t places_ = 0;    ///< of all passes
+  /// Of every direction of a ball and every operation before: the motion that removed there last.
+  std::vector<std::size_t> answered_;
   RoughingPasses out_;
 };
 

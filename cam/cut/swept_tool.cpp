@@ -120,14 +120,25 @@ double SweptTool::excess(const Vec3& p, double cap) const {
   return best;
 }
 
-bool SweptTool::comes_within(std::size_t count, const Vec3& p, double near_mm) const {
+bool SweptTool::comes_within(std::size_t count, const Vec3& p, double near_mm, std::size_t* answered) const {
+  const std::size_t bodies = cutting_.size(), all = std::min(count, motions_.size()) * bodies;
+  const auto comes = [&](std::size_t owner) {
+    return least_distance(p, cutting_[owner % bodies], motions_[owner / bodies], near_mm, near_mm) < near_mm;
+  };
+  if (answered && *answered < all)
+    for (const std::size_t owner : {*answered, *answered + bodies, *answered - bodies})
+      if (owner < all && comes(owner)) {
+        *answered = owner;
+        return true;
+      }
   bool near = false;
   std::array<std::size_t, kSeen> seen;
   seen.fill(SIZE_MAX);
   index_.near(p, std::max(near_mm, 0.0), [&](std::size_t box, double radius) {
-    const std::size_t owner = owners_[box], k = owner / cutting_.size();
-    if (near || k >= count || std::exchange(seen[owner % kSeen], owner) == owner) return radius;
-    near = least_distance(p, cutting_[owner % cutting_.size()], motions_[k], near_mm, near_mm) < near_mm;
+    const std::size_t owner = owners_[box];
+    if (near || owner >= all || std::exchange(seen[owner % kSeen], owner) == owner) return radius;
+    near = comes(owner);
+    if (near && answered) *answered = owner;
     return near ? 0.0 : radius;
   });
   return near;
@@ -151,8 +162,8 @@ double Removed::excess(const Vec3& p, double cap) const {
   return e;
 }
 
-bool Removed::comes_within(const Vec3& p, double near_mm) const {
-  return (balls_ ? balls_->excess(p, near_mm) < near_mm : tool_->comes_within(SIZE_MAX, p, near_mm)) ||
+bool Removed::comes_within(const Vec3& p, double near_mm, std::size_t* answered) const {
+  return (balls_ ? balls_->excess(p, near_mm) < near_mm : tool_->comes_within(SIZE_MAX, p, near_mm, answered)) ||
          std::any_of(others_.begin(), others_.end(), [&](const Removed* r) { return r->comes_within(p, near_mm); });
 }
 

@@ -30,7 +30,10 @@ class SweptTool {
   /// `cap` are returned as `cap`. mm.
   [[nodiscard]] double excess(const Vec3& p, double cap) const;
   /// Is it less than `near_mm` after the first `count` motions? Any of them that comes so near answers.
-  [[nodiscard]] bool comes_within(std::size_t count, const Vec3& p, double near_mm) const;
+  /// @param answered  kept by who asks of one place after another: the motion that answered last, asked first with
+  ///                  those beside it. It makes the answer cheaper, not another one. SIZE_MAX: none yet.
+  [[nodiscard]] bool comes_within(std::size_t count, const Vec3& p, double near_mm,
+                                  std::size_t* answered = nullptr) const;
 
  private:
   std::vector<path::ToolMotion> motions_;
@@ -51,7 +54,7 @@ class Removed {
   /// As `SweptPath::excess`.
   [[nodiscard]] double excess(const Vec3& p, double cap) const;
   /// Is it less than `near_mm`?
-  [[nodiscard]] bool comes_within(const Vec3& p, double near_mm) const;
+  [[nodiscard]] bool comes_within(const Vec3& p, double near_mm, std::size_t* answered = nullptr) const;
 
  private:
   std::unique_ptr<SweptPath> balls_;  // one of the two
