@@ -26,9 +26,11 @@ Vec3 turned_by(const Vec3& p, const std::pair<double, double>& turn) {
 class BodyTree::Search {
  public:
   /// @param stop the search may end where the gap is found to be less
+  /// @param left_out  zone that is not asked; -1: all are
   Search(const BodyTree& tree, const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double stop,
-         double resolution_mm)
+         double resolution_mm, int left_out)
       : tree_(tree),
+        left_out_(left_out),
         body_(body),
         tip_(tip),
         axis_(axis),
@@ -40,10 +42,8 @@ class BodyTree::Search {
         radius_(std::hypot(0.5 * (body.to - body.from), std::max(body.radius_from, body.radius_to))) {}
 
   double run() {
-    for (const Zone& zone : tree_.zones_) {
-      if (!zone.nodes.empty()) teeth(zone);
-      if (ended()) break;
-    }
+    for (std::size_t z = 0; z < tree_.zones_.size() && !ended(); ++z)
+      if (const Zone& zone = tree_.zones_[z]; int(z) != left_out_ && !zone.nodes.empty()) teeth(zone);
     return best_ < enough_ + tree_.sag_ ? best_ - tree_.sag_ : enough_;  // (enough + sag) - sag may be less than enough
   }
 
@@ -136,6 +136,7 @@ class BodyTree::Search {
   }
 
   const BodyTree& tree_;
+  int left_out_;
   const tool::Frustum& body_;
   Vec3 tip_, axis_;
   double enough_, best_, stop_, resolution_;
@@ -199,10 +200,10 @@ std::uint32_t BodyTree::build(Zone& zone, std::uint32_t first, std::uint32_t cou
 }
 
 double BodyTree::least(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double stop,
-                       double resolution_mm) const {
+                       double resolution_mm, int left_out) const {
   const double above = roof_.over(body, tip, axis);
   if (above >= enough) return enough;
-  const double found = Search(*this, body, tip, axis, enough, stop, resolution_mm).run();
+  const double found = Search(*this, body, tip, axis, enough, stop, resolution_mm, left_out).run();
   return std::max(found, above);  // the whole part lies below: that is a proven gap too
 }
 
@@ -215,6 +216,11 @@ double BodyTree::gap(const tool::Frustum& body, const Vec3& tip, const Vec3& axi
 bool BodyTree::keeps(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double clearance_mm,
                      double resolution_mm) const {
   return least(body, tip, axis, clearance_mm, clearance_mm, resolution_mm) >= clearance_mm;
+}
+
+bool BodyTree::keeps_other_rings(int zone, const tool::Frustum& body, const Vec3& tip, const Vec3& axis,
+                                 double clearance_mm, double resolution_mm) const {
+  return least(body, tip, axis, clearance_mm, clearance_mm, resolution_mm, zone) >= clearance_mm;
 }
 
 bool BodyTree::clear(const std::vector<tool::Frustum>& bodies, const Vec3& tip, const Vec3& axis, double clearance_mm,

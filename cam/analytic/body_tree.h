@@ -30,6 +30,9 @@ class BodyTree {
   /// Is that gap at least `clearance_mm`? Ends at the first facet that stands in the way.
   [[nodiscard]] bool keeps(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double clearance_mm,
                            double resolution_mm) const;
+  /// The same for the teeth of all other zones: the rings across the relief groove.
+  [[nodiscard]] bool keeps_other_rings(int zone, const tool::Frustum& body, const Vec3& tip, const Vec3& axis,
+                                       double clearance_mm, double resolution_mm) const;
   /// The same for every body.
   [[nodiscard]] bool clear(const std::vector<tool::Frustum>& bodies, const Vec3& tip, const Vec3& axis,
                            double clearance_mm, double resolution_mm) const;
@@ -64,7 +67,7 @@ class BodyTree {
   class Search;
   static std::uint32_t build(Zone& zone, std::uint32_t first, std::uint32_t count);
   [[nodiscard]] double least(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double stop,
-                             double resolution_mm) const;
+                             double resolution_mm, int left_out = -1) const;
 
   proof::Roof roof_;
   double sag_, pitch_;

@@ -120,7 +120,7 @@ std::string RefusalWords::keeps(tool::Body body, double gap) const {
       body, does, needed(), o_.clearance_mm, kTightMargin);
 }
 
-std::string RefusalWords::flute_words(const BallPass::Point& point) const {
+std::optional<std::string> RefusalWords::flute_words(const BallPass::Point& point) const {
   double shallowest = INFINITY, lean = 0;
   const LeanGrid grid(std::tan(o_.farthest_lean_rad));
   for (const auto& q : grid.leans) {
@@ -128,6 +128,7 @@ std::string RefusalWords::flute_words(const BallPass::Point& point) const {
     const double depth = check_.flute_depth(point, axis);
     if (depth < shallowest) shallowest = depth, lean = angle_between(axis, check_.frame().up);
   }
+  if (shallowest <= 0) return {};
   return fmt::format(
       "its flute would cut in every direction, least where it leans {:.1f} deg: by {:.4f} mm; a ball of "
       "less diameter is needed",
@@ -139,8 +140,18 @@ OrientationRefusal RefusalWords::blocked(const std::vector<BallPass>& passes, co
   const Spot worst = worst_of(spots);
   const Vec3 axis = check_.frame().axis(worst.lean.x(), worst.lean.y());
   const auto [body, gap] = nearest_body(worst.point, axis);
-  if (worst.slimmer >= kDeepest || body == tool::Body::none)
-    return {fmt::format("{} {}", place(worst.point), flute_words(worst.point))};
+  if (worst.slimmer >= kDeepest || body == tool::Body::none) {
+    if (const auto words = flute_words(worst.point)) return {fmt::format("{} {}", place(worst.point), *words)};
+    if (body == tool::Body::none)
+      return {
+          fmt::format("{} its flute would cut in some directions, in the others shank or holder do not keep {:.3f} "
+                      "mm; a ball of less diameter, or a slimmer tool",
+                      place(worst.point), needed())};
+    return {
+        fmt::format("{} no direction within {:.0f} deg of the normal of the pitch surface is clear, nor would be "
+                    "with a tool that is {:g} mm slimmer: upright {}",
+                    place(worst.point), degrees(o_.farthest_lean_rad), kDeepest, keeps(body, gap))};
+  }
   const std::string more =
       spots.size() > 1 ? fmt::format(" (nor at {} more places, this is the worst)", spots.size() - 1) : "";
   return with_trials(

@@ -14,6 +14,7 @@
 #include "cam/ball/sheet_pass.h"
 #include "cam/ball/tool_direction.h"
 #include "cam/ball/tool_orientation.h"
+#include "cam/path/asked_stock.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
@@ -41,6 +42,12 @@ constexpr double kTurnMargin = 0.02;
 /// that begins close to its limit; and to which a diameter is told, mm.
 constexpr double kSmallerBalls[] = {0.85, 0.7, 0.5, 0.3}, kFartherOut[] = {0.02, 0.05, 0.1, 0.2, 0.4};
 constexpr double kToldSize = 0.01;
+
+// Of the run-out that is wanted: less is none. mm to which an allowance that would do is told.
+constexpr double kLeastRunOut = 0.05, kToldAllowance = 0.001;
+
+// mm that a roughing ball keeps from the ring across a relief groove, or its allowance where that is more.
+constexpr double kAir = 0.1;
 
 // mm beyond the stock that a hop looks for it.
 constexpr double kStockMargin = 0.05;
@@ -106,12 +113,8 @@ class Planner::Work {
     const auto& ring = part_.space(zone).outline();
     const bool roughing = op.type == path::OperationType::roughing;
     // How far the ball may go beyond the ends: free into the air, limited where the other ring of teeth stands.
-    const double wanted = roughing ? 0.6 * delta + 0.1 : 0.5 * R, room = room_beyond(zone, roughing, R, delta, wanted);
-    if (room < 0.05 * wanted)
-      return PlanRefusal{key_of(n) + ".tool",
-                         fail("a ball of {:.4f} mm has no room to run out into the relief groove of zone {}: the way "
-                              "left is {:.4f} mm, at least {:.4f} mm is needed",
-                              2 * R, zone, room, 0.05 * wanted)};
+    const double wanted = run_out(roughing, R, delta), room = room_beyond(zone, roughing, R, delta, wanted);
+    if (room < kLeastRunOut * wanted) return no_run_out(n, zone, room, kLeastRunOut * wanted);
     const double margin = std::max(delta, room) + 0.1;
     ZonePasses out{tooth_space::OffsetSheet(part_.space(zone), roughing ? delta + kRoughingPad : delta,
                                             ring.s_from - margin, ring.s_to + margin, roughing ? 65 : 33),
@@ -176,6 +179,31 @@ class Planner::Work {
     return {};
   }
 
+  /// How far a ball should go beyond the ends of a zone. mm
+  [[nodiscard]] static double run_out(bool roughing, double R, double delta) {
+    return roughing ? 0.6 * delta + 0.1 : 0.5 * R;
+  }
+  [[nodiscard]] PlanRefusal no_run_out(int n, int zone, double room, double least) const {
+    const path::MillingOperation& op = operation(n);
+    const bool roughing = op.type == path::OperationType::roughing;
+    const double R = tool_of(n).radius_mm();
+    const auto fits = [&](double allowance) {
+      const double delta = R + allowance, wanted = run_out(roughing, R, delta);
+      return room_beyond(zone, roughing, R, delta, wanted) >= kLeastRunOut * wanted;
+    };
+    if (op.allowance_mm == 0 || !fits(0))
+      return {key_of(n) + ".tool", fail("a ball of {:.4f} mm has no room to run out into the relief groove of zone {}: "
+                                        "the way left is {:.4f} mm, at least {:.4f} mm is needed",
+                                        2 * R, zone, room, least)};
+    double low = 0, high = op.allowance_mm;
+    while (high - low > kToldAllowance) (fits(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+    return {key_of(n) + ".allowance",
+            fail("allowance = {:g} mm cannot stay on the ring across the relief groove of zone {}: a ball of {:.4f} mm "
+                 "has {:.4f} mm left to run out into it, at least {:.4f} mm is needed; {:.3f} or less would do, or a "
+                 "wider groove",
+                 op.allowance_mm, zone, 2 * R, room, least, std::floor(low / kToldAllowance) * kToldAllowance)};
+  }
+
   /// Way that a ball has beyond the ends of a zone, at most `wanted`. mm
   [[nodiscard]] double room_beyond(int zone, bool roughing, double R, double delta, double wanted) const {
     const auto& ring = part_.space(zone).outline();
@@ -185,7 +213,7 @@ class Planner::Work {
       const double gap = std::max(other.s_from - ring.s_to, ring.s_from - other.s_to);
       if (gap <= 0) continue;
       // The centre of a ball in contact at the end lies at most 0.7 delta beyond it.
-      room = std::min(room, roughing ? gap - R - 0.1 : gap - 1.7 * delta - 0.05);
+      room = std::min(room, roughing ? gap - std::max(R + kAir, delta) : gap - 1.7 * delta - 0.05);
     }
     return room;
   }
@@ -306,6 +334,14 @@ class Planner::Work {
     return {};
   }
 
+  /// What must stay on the flanks, which flutes pass by: where an operation leaves them out, no more than there was.
+  [[nodiscard]] double left_on_flanks(int n) const {
+    const double own = operation(n).allowance_mm;
+    if (operation(n).regions[path::Region::flank]) return own;
+    const auto before = path::last_before(operations_, std::size_t(n), path::Region::flank);
+    return before ? std::min(own, operations_[*before].allowance_mm) : own;
+  }
+
   /// One direction for the whole zone, or axes for every point: as prescribed, or where no fixed direction is clear.
   [[nodiscard]] std::optional<PlanRefusal> direct(int n, int zone, ZonePasses& made, proof::DirectionChoice& direction,
                                                   std::vector<std::vector<Vec3>>& axes) {
@@ -313,6 +349,7 @@ class Planner::Work {
     const auto& tool = tool_of(n);
     OrientationOptions turning;
     turning.clearance_mm = o_.limits.clearance_mm;
+    turning.allowance_mm = left_on_flanks(n);
     turning.least_tilt_rad = o_.least_tilt_rad;
     turning.trial = o_.trial;
     turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
@@ -324,8 +361,9 @@ class Planner::Work {
     as_stage("tool direction", [&] {
       if (!bodies_) bodies_ = std::make_unique<analytic::BodyTree>(part_);
       if (!prescribed)
-        direction = choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool,
-                                     {o_.limits.clearance_mm, kLeastDraft + std::sin(tool.half_angle_rad)});
+        direction = choose_direction(
+            part_, *bodies_, zone, made.sheet, made.passes, tool,
+            {o_.limits.clearance_mm, kLeastDraft + std::sin(tool.half_angle_rad), turning.allowance_mm});
     });
     direction.operation = n;
     direction.zone = zone;
@@ -511,7 +549,7 @@ class Planner::Work {
     const int steps = std::max(4, int(std::ceil((b - a).norm() / (0.05 * R))));
     for (int k = 0; k <= steps; ++k) {
       const double d = part_.nearest(a + (b - a) * (double(k) / steps), R + allowance + 0.05).distance;
-      if (d < R + 0.8 * allowance - 0.4 * o_.limits.gouge_mm) return false;
+      if (d < R + (allowance > 0 ? path::kPlannedStock * allowance : -0.4 * o_.limits.gouge_mm)) return false;
     }
     return true;
   }
@@ -539,7 +577,7 @@ class Planner::Work {
 
   /// Both ends of a hop touch the finished surface (or keep the allowance); in between there must be air.
   [[nodiscard]] Meets hop_meets(const Vec3& a, const Vec3& b, double R, double allowance, double stock) const {
-    const double length = (b - a).norm(), least = R + 0.5 * allowance - 1e-3,
+    const double length = (b - a).norm(), least = R + path::kPlannedStock * allowance - std::max(1e-3 - allowance, 0.0),
                  look = std::max(R + 0.2, std::min(R + stock + kStockMargin, reach_of(tools_)));
     const int steps = std::max(1, int(std::ceil(length / (0.25 * R))));
     double previous = part_.nearest(a, look).distance, nearest = previous;

@@ -8,15 +8,18 @@
 #include <cmath>
 #include <optional>
 
+#include "cam/path/asked_stock.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::ball {
 namespace {
 
-constexpr double kEnough = 2.0;                // mm: a gap beyond this is not measured further
+constexpr double kEnough = 2.0;                // mm: a gap beyond this is not measured further, if it is clear
 constexpr double kDirectionDeepest = 3.0;      // mm: how far a body in the way is followed
 constexpr double kDirectionResolution = 0.02;  // mm
 constexpr double kFluteSkin = 0.03;  // mm: the flute grazes the walls that it cuts; thinner by this it may cut nowhere
+constexpr double kFluteResolution = 1e-3;  // mm
+constexpr double kFacetRoom = 0.01;        // mm: walls of facets beside a flute that keeps an allowance
 
 /// The flute above the ball as a body. It stands on the side that is away from its own walls where these have draft;
 /// the other ring of teeth, across a relief groove, may still be in its way.
@@ -25,6 +28,12 @@ std::optional<tool::Frustum> flute_body(const tool::ToolAssembly& tool) {
   if (top - R < skin) return std::nullopt;
   const double wider = (top - R - skin) * std::tan(tool.half_angle_rad);
   return tool::Frustum{R + skin, top, R - skin, R - skin + wider, tool::Body::flute};
+}
+
+/// Where it goes when the tool draws back: above it, if a thinner shank stands there.
+std::optional<tool::Frustum> drawn_back(const tool::Frustum& flute, const tool::ToolAssembly& tool) {
+  if (0.5 * tool.shank_diameter_mm >= flute.radius_to || tool.stick_out_mm <= flute.to) return std::nullopt;
+  return tool::Frustum{flute.to, tool.stick_out_mm, flute.radius_to, flute.radius_to, tool::Body::flute};
 }
 
 std::vector<Vec3> all_centres(const std::vector<BallPass>& passes) {
@@ -47,6 +56,7 @@ class Search {
          const tooth_space::OffsetSheet& sheet, const std::vector<BallPass>& passes, const tool::ToolAssembly& tool,
          const DirectionOptions& options)
       : tree_(tree),
+        zone_(zone),
         sheet_(sheet),
         tool_(tool),
         o_(options),
@@ -54,9 +64,16 @@ class Search {
         few_(some_of(all_, 24)),
         many_(some_of(all_, 400)),
         frame_(pitch_frame(part, zone)),
+        enough_(std::max(kEnough, options.clearance_mm)),
         beside_ring_(part.zones() > 1),
         upright_first_(beside_ring_ && part.part().chart().sine == 0) {
     if (beside_ring_ || tool.half_angle_rad > 0) flute_ = flute_body(tool);
+    if (flute_) {
+      const double skin = tool.radius_mm() - flute_->radius_from;
+      beside_mm_ = path::kPlannedStock * options.allowance_mm + skin;
+      if (options.allowance_mm > 0) own_mm_ = std::max(0.0, beside_mm_ - kFacetRoom);
+      if (beside_ring_) drawn_back_ = drawn_back(*flute_, tool);
+    }
     choice_.zone = zone;
     choice_.fixed = false;
   }
@@ -118,7 +135,7 @@ class Search {
 
   /// Least gap of shank and holder over the centres, up to some; of a body that cuts in: minus its `depth`.
   [[nodiscard]] double gap(const Vec3& axis, const std::vector<Vec3>& centres, tool::Body& worst) const {
-    return gap_below(kEnough, axis, centres, worst);
+    return gap_below(enough_, axis, centres, worst);
   }
   [[nodiscard]] double gap_below(double enough, const Vec3& axis, const std::vector<Vec3>& centres,
                                  tool::Body& worst) const {
@@ -151,9 +168,17 @@ class Search {
   [[nodiscard]] bool flute_cuts(const Vec3& axis, const std::vector<Vec3>& centres) const {
     std::atomic<bool> cuts{false};
     tbb::parallel_for(std::size_t(0), centres.size(), [&](std::size_t k) {
-      if (!cuts && !tree_.keeps(*flute_, centres[k] - tool_.radius_mm() * axis, axis, 0, 1e-3)) cuts = true;
+      if (!cuts && flute_cuts(axis, Vec3(centres[k] - tool_.radius_mm() * axis))) cuts = true;
     });
     return cuts;
+  }
+  [[nodiscard]] bool flute_cuts(const Vec3& axis, const Vec3& tip) const {
+    if (!tree_.keeps(*flute_, tip, axis, own_mm_, kFluteResolution)) return true;
+    if (!beside_ring_) return false;
+    const auto keeps = [&](const tool::Frustum& body) {
+      return tree_.keeps_other_rings(zone_, body, tip, axis, beside_mm_, kFluteResolution);
+    };
+    return !keeps(*flute_) || (drawn_back_ && !keeps(*drawn_back_));
   }
 
   /// Halved steps around the directions that come nearest to being clear: a narrow way through is found too.
@@ -235,9 +260,9 @@ class Search {
       choice_.lean_rad = 0;
     }
     choice_.clearance_mm = c.gap_mm;
-    choice_.clearance_at_least = c.gap_mm >= kEnough;
+    choice_.clearance_at_least = c.gap_mm >= enough_;
     const std::string room =
-        c.gap_mm >= kEnough ? fmt::format("more than {:.0f} mm", kEnough) : fmt::format("{:.3f} mm", c.gap_mm);
+        c.gap_mm >= enough_ ? fmt::format("more than {:g} mm", enough_) : fmt::format("{:.3f} mm", c.gap_mm);
     if (choice_.lean_rad == 0 && c.lean_rad > 0)
       choice_.explanation = fmt::format(
           "along the gear axis, {:.0f} deg from the normal of the pitch surface: the flute stays clear of the other "
@@ -273,14 +298,18 @@ class Search {
   }
 
   const analytic::BodyTree& tree_;
+  int zone_;
   const tooth_space::OffsetSheet& sheet_;
   const tool::ToolAssembly& tool_;
   const DirectionOptions& o_;
   std::vector<Vec3> all_, few_, many_;
   PitchFrame frame_;
+  double enough_;                       ///< gaps beyond are not measured further, mm
   bool beside_ring_;                    ///< a double helical gear: another ring of teeth stands across the groove,
   bool upright_first_;                  ///< which an axis along that of the gear does not meet
   std::optional<tool::Frustum> flute_;  ///< asked for then, and where it is a cone
+  std::optional<tool::Frustum> drawn_back_;
+  double own_mm_ = 0, beside_mm_ = 0;  ///< what that body keeps from the teeth of the zone and of other rings
   proof::DirectionChoice choice_;
 };
 

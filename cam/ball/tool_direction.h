@@ -16,6 +16,7 @@ struct DirectionOptions {
   double clearance_mm = proof::ProofLimits{}.clearance_mm;  ///< least gap of shank and holder
   double least_draft =
       0.01;  ///< least cosine between the tool axis and the normals of the surface: the ball, not its shank, cuts
+  double allowance_mm = 0;  ///< that stays on all teeth: the flute leaves `path::kPlannedStock` of it
 };
 
 /// The frame in which directions are counted: `up` is the normal of the pitch surface in the middle of the zone (for a
@@ -30,9 +31,9 @@ struct PitchFrame {
 /// Tries directions around the normal of the pitch surface, leaning by 0 to 45 deg in steps of 5 deg to sides at most 7
 /// deg of arc apart, then smaller and smaller steps around the best of them, and takes the clear one that leans least.
 /// Where another ring of teeth stands beside the zone of a face gear, the gear axis comes first, and a direction in
-/// which the flute cuts the teeth is not clear. `fixed` is false and the axis meaningless when none is clear; then the
-/// map holds every direction tried with the body in the way and its gap. A gap below 0 says by how much the body would
-/// have to be slimmer and begin higher to cut nowhere (followed to -3 mm).
+/// which the flute cuts the teeth, or their allowance, is not clear. `fixed` is false and the axis meaningless when
+/// none is clear; then the map holds every direction tried with the body in the way and its gap. A gap below 0 says by
+/// how much the body would have to be slimmer and begin higher to cut nowhere (followed to -3 mm).
 [[nodiscard]] proof::DirectionChoice choose_direction(const analytic::GearDistance& part,
                                                       const analytic::BodyTree& tree, int zone,
                                                       const tooth_space::OffsetSheet& sheet,

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "cam/ball/orientation_way.h"
+#include "cam/path/asked_stock.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
 
@@ -534,7 +535,7 @@ bool OrientationCheck::stands_right(const BallPass::Point& point, const Vec3& ax
 }
 
 double OrientationCheck::flute_cut(const BallPass::Point& point, const Vec3& axis, double above) const {
-  const double R = tool_.radius_mm() + above * std::sin(tool_.half_angle_rad);
+  const double R = tool_.radius_mm() + above * std::sin(tool_.half_angle_rad) + path::kPlannedStock * o_.allowance_mm;
   return R - part_.nearest(point.centre + above * axis, R + 0.01).distance;
 }
 

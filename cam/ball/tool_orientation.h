@@ -33,6 +33,7 @@ inline constexpr double kTightStation = 0.35, kFinestLean = 0.002;
 
 struct OrientationOptions {
   double clearance_mm = proof::ProofLimits{}.clearance_mm;  ///< least gap of shank and holder
+  double allowance_mm = 0;    ///< that stays on all teeth: the flute leaves `path::kPlannedStock` of it
   double margin_mm = 0.02;    ///< kept beyond it at the stations, for what lies between them
   double least_draft = 0.02;  ///< least cosine between the axis and the normal at the contact
   double least_tilt_rad =
@@ -96,7 +97,8 @@ class OrientationCheck {
   [[nodiscard]] std::optional<Moment> not_kept(const Moment& from, const Moment& to, double clearance_mm) const;
   /// By how much `cutting` fails: depth of the flute in the part, or what is missing of the draft at the ball. mm
   [[nodiscard]] double flute_depth(const BallPass::Point& point, const Vec3& axis) const;
-  /// Depth of the flute in the part where it is so far above the ball centre; of a taper it widens. Negative: clear. mm
+  /// Depth of the flute in the part, with the allowance that it leaves, where it is so far above the ball centre; of a
+  /// taper it widens. Negative: clear. mm
   [[nodiscard]] double flute_cut(const BallPass::Point& point, const Vec3& axis, double above) const;
   /// Makes shank and holder slimmer by so much, and begin as much higher: by how much does something fail?
   void slim(double by_mm);
@@ -142,7 +144,7 @@ class RefusalWords {
   [[nodiscard]] Spot worst_of(std::vector<Spot> spots) const;
   [[nodiscard]] std::pair<tool::Body, double> nearest_body(const BallPass::Point& point, const Vec3& axis) const;
   [[nodiscard]] std::string keeps(tool::Body body, double gap) const;
-  [[nodiscard]] std::string flute_words(const BallPass::Point& point) const;
+  [[nodiscard]] std::optional<std::string> flute_words(const BallPass::Point& point) const;
   [[nodiscard]] tool::ToolAssembly changed(Part part, double by) const;
   [[nodiscard]] double most(Part part) const;
   [[nodiscard]] std::optional<double> enough(Part part, std::vector<Spot>& spots) const;

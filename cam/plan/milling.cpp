@@ -6,6 +6,7 @@
 
 #include "cam/analytic/gouge_check.h"
 #include "cam/line/room.h"
+#include "cam/path/asked_stock.h"
 #include "cam/plan/beside_side.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
@@ -13,8 +14,6 @@
 namespace toothpath::plan {
 namespace {
 
-constexpr double kLeastStock = 0.85;  // of the allowance, on every flank: a program is refused below 0.8
-constexpr double kAskedStock = 0.8;   // of the allowance, which the proof asks for
 constexpr double kLiftShare = 0.5;
 constexpr double kAxisStands = 1e-9;  // of a unit vector: less is no turn
 constexpr int kAllAxes = 5;           // X, Y, Z and two rotaries
@@ -131,13 +130,13 @@ class MillingPlanner {
       const bool same = std::any_of(path::kRegions.begin(), path::kRegions.end(),
                                     [&](path::Region r) { return op.regions[r] && before.regions[r]; });
       const double pad = before.type == path::OperationType::roughing ? ball::kRoughingPad : 0;
-      if (!same || before.allowance_mm + pad >= kAskedStock * op.allowance_mm) continue;
+      if (!same || before.allowance_mm + pad >= path::kAskedStock * op.allowance_mm) continue;
       return ball::PlanRefusal{
           fmt::format("operation[{}].allowance", n),
           fail("allowance = {:g} mm cannot be left: operation {} ({}) before it has cut down to {:g} mm already, below "
                "{:.4g} mm ({} of it); {:g} or less would do, or a larger allowance of operation {}",
-               op.allowance_mm, k, to_string(before.type), before.allowance_mm, kAskedStock * op.allowance_mm,
-               kAskedStock, before.allowance_mm, k)};
+               op.allowance_mm, k, to_string(before.type), before.allowance_mm, path::kAskedStock * op.allowance_mm,
+               path::kAskedStock, before.allowance_mm, k)};
     }
     return {};
   }
@@ -287,7 +286,7 @@ class MillingPlanner {
     line::RoomOptions room;
     room.clearance_mm = o_.limits.clearance_mm;
     if (op.allowance_mm > 0) {
-      room.stock_mm = kLeastStock * op.allowance_mm;
+      room.stock_mm = path::kPlannedStock * op.allowance_mm;
       // What the ball end leaves at the fillet line when it stands higher: a share of the chord.
       asked.base_lift_mm = std::sqrt(2 * profile.law()->r_0 * kLiftShare * op.chord_tolerance_mm);
     }

@@ -9,6 +9,7 @@
 #include "app/process/milled/unreached.h"
 #include "app/process/proof_limits.h"
 #include "cam/ball/plan.h"
+#include "cam/path/asked_stock.h"
 #include "cam/proof/rapid_clearance.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
@@ -72,9 +73,6 @@ proof::GougeResult gouge_of(const analytic::GougeCheck& check, process::ProgramP
   return stream.finish();
 }
 
-/// The least stock after an operation, as a share of its allowance.
-constexpr double kLeastAllowance = 0.8;
-
 /// What may stand above the allowance of a line-milled flank, whether or not others follow.
 void judge_line_flank(const cut::CutSurface& surface, const path::MillingOperation& op, std::size_t n,
                       std::vector<std::string>& reasons) {
@@ -133,14 +131,15 @@ void judge_surface(const cut::CutSurface& surface, const job::Job& job, const pr
     double lacks = 0;
     for (const path::Region region : path::kRegions) {
       if (side && region != path::Region::flank) continue;
-      const double least = surface.least_in_mm[n][region], lack = kLeastAllowance * asked_stock(job, n, region) - least;
+      const double least = surface.least_in_mm[n][region],
+                   lack = path::kAskedStock * asked_stock(job, n, region) - least;
       if (op.allowance_mm > 0 && lack > lacks) lacks = lack, thin = region;
     }
     if (!thin) continue;
     const double allowance = asked_stock(job, n, *thin);
     reasons.push_back(fmt::format(
         "operation {}: the least stock left on the {} is {:.4f} mm, below {:.4f} mm ({} of the allowance {:.4f})", n,
-        to_string(*thin), surface.least_in_mm[n][*thin], kLeastAllowance * allowance, kLeastAllowance, allowance));
+        to_string(*thin), surface.least_in_mm[n][*thin], path::kAskedStock * allowance, path::kAskedStock, allowance));
   }
   judge_finished(surface, job, limits, reasons);
 }

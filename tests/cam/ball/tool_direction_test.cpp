@@ -37,6 +37,18 @@ TEST(Direction, FatHolderOnAShortToolIsRefusedOrLeansAndSaysWhy) {
   }
 }
 
+// Gaps are measured as far as the clearance asks.
+TEST(Direction, AClearanceOfThreeMillimetresIsFound) {
+  const auto tool = test::ball_mill(1, 12, 0.95, 24, 10);
+  const face_gear::FaceGear gear = test::made(test::small_spur());
+  const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({tool}));
+  plan::Options options;
+  options.limits.clearance_mm = 3;
+  const auto plan = plan::plan_milling(part, {tool}, {test::finishing(0, 0.05, 0.002)}, options);
+  ASSERT_FALSE(plan.refused()) << plan.refused()->diagnostic.message;
+  EXPECT_GE(plan.value().directions.front().clearance_mm, 3);
+}
+
 // At a shaft angle of 100 deg the normal of the pitch surface leans by 10 deg. Along it the flute of a tool that runs
 // out of one ring would cut into the other, 1.4 mm away; the gear axis keeps clear of it.
 TEST(Direction, TheFluteStaysOutOfTheOtherRing) {
