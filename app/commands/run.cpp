@@ -25,7 +25,9 @@ std::vector<Diagnostic> read_inputs(flow::Run& run, const RunRequest& request) {
   auto read = run.clock.run("job", [&] { return job::read_job_file(request.job_file); });
   if (auto* errors = read.refused()) return std::move(*errors);
   run.job = std::move(read).value();
-  return flow::prepare(run, request);
+  auto errors = flow::prepare(run, request);
+  if (!errors.empty()) return errors;
+  return process::finer_than_the_machine(run.job, run.machine, 0.5 * run.gear.process->part().diameter_mm);
 }
 
 /// The files for people and for other programs; the program itself is there already.

@@ -20,6 +20,7 @@ constexpr toml::Range kAllowance{0, 50, " mm"};
 constexpr double kLeastAllowance = 1e-4;  // mm: the path follows a share of it, and is rounded like all numbers of NC
 constexpr toml::Range kScallop{1e-5, 1, " mm"};
 constexpr toml::Range kChordTolerance{1e-5, 0.1, " mm"};
+constexpr toml::Range kGougeTolerance{1e-4, 0.1, " mm"};  // less is nothing that words and proofs can hold
 constexpr toml::Range kPosition{-100000, 100000, " mm"};
 constexpr double kMostAxisLean = 60;  // deg
 constexpr double kAxisKeyGap = 0.01;  // mm between two keys of a tool axis
@@ -442,7 +443,7 @@ ContactSettings read_contact(toml::TableReader& table, const Job& job) {
 
 VerifySettings read_verify(toml::TableReader& table) {
   VerifySettings verify;
-  verify.gouge_tolerance_mm = table.number_or("gouge_tolerance", {1e-5, 0.1, " mm"}, verify.gouge_tolerance_mm);
+  verify.gouge_tolerance_mm = table.number_or("gouge_tolerance", kGougeTolerance, verify.gouge_tolerance_mm);
   verify.all_teeth = table.word_or("teeth", {"one", "all"}, "one") == "all";
   verify.clearance_mm = table.optional_number("clearance", {0, 50, " mm"});
   verify.unreached_mm = table.optional_number("unreached", {0, 50, " mm"});

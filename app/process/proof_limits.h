@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "app/job/job.h"
 #include "cam/proof/limits.h"
@@ -27,6 +28,11 @@ inline constexpr double kFingerMargin = 1.5e-3;
 
 /// What rounding the words of a machine's programs may cost at this radius about the gear axis, mm.
 [[nodiscard]] double word_rounding(const machines::Machine& machine, double radius_mm);
+
+/// Tolerances and allowances that no program of this machine can keep: what its control leaves of the path and the
+/// rounding of the words X Y Z are more. Located at their keys; none where a program may keep them.
+[[nodiscard]] std::vector<Diagnostic> finer_than_the_machine(const job::Job& job, const machines::Machine& machine,
+                                                             double radius_mm);
 
 /// What the rounding costs the flanks of a line-milled gear, where that is much of the gouge tolerance; nothing where
 /// it is not, and for other gears.

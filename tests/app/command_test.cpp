@@ -406,7 +406,7 @@ TEST(OutputDirectory, AnotherRunMovesTheEarlierOneToPrevious) {
 
   // Not verified: the program moves, the report of the new one stands there alone.
   write_file(dir / "job.toml",
-             std::regex_replace(file_text(kQuick), std::regex("gouge_tolerance = .*"), "gouge_tolerance = 0.0004"));
+             std::regex_replace(file_text(kQuick), std::regex("gouge_tolerance = .*"), "gouge_tolerance = 0.0006"));
   const Finished second = run_program({"run", dir / "job.toml", "--out", dir / "out"});
   EXPECT_EQ(second.exit_code, 1) << second.err;
   EXPECT_FALSE(std::filesystem::exists(dir / "out/program.ngc"));

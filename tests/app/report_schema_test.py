@@ -66,7 +66,7 @@ if len(keys) < 150:
 with tempfile.TemporaryDirectory() as folder:
     strict = f"{folder}/strict.toml"
     with open(f"{root}/samples/spur_quick.toml", encoding="utf-8") as file:
-        text = re.sub(r"gouge_tolerance = \S+", "gouge_tolerance = 0.00001", file.read())
+        text = re.sub(r"gouge_tolerance = \S+", "gouge_tolerance = 0.0006", file.read())
     with open(strict, "w", encoding="utf-8") as file:
         file.write(text)
     runs = [

@@ -134,7 +134,7 @@ assert {flank.side for flank in toothpath.Gear(bevel).flanks()} == {"L", "U"}
 
 # A program that is not verified is a report without a program.
 strict = folder / "strict.toml"
-strict.write_text(quick.read_text().replace("gouge_tolerance = 0.002", "gouge_tolerance = 0.0003"))
+strict.write_text(quick.read_text().replace("gouge_tolerance = 0.002", "gouge_tolerance = 0.0006"))
 refused = toothpath.run(strict, folder / "strict")
 assert not refused.verified and refused.program is None and refused.reasons and not list((folder / "strict").glob("program.*"))
 
