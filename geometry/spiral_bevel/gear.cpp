@@ -413,17 +413,39 @@ Inspected inspected(const SpiralBevelParameters& gear) {
   return out;
 }
 
+using Set = std::function<void(SpiralBevelParameters&, double)>;
+using Search = std::function<std::optional<double>(double from, double to, const Set& set)>;
+
+double up(double x) { return std::ceil(1e4 * x) / 1e4; }
+
+/// `way_out` of a key that says how the cutter is set, not of its blades.
+std::string way_out_by_setting(const SpiralBevelParameters& gear, const std::string& key, const Search& search) {
+  if (key.ends_with(".radial_distance")) {
+    const auto cut = std::size_t(key[4] - '0');
+    const double S = gear.cuts[cut].radial_distance_mm;
+    const auto radial = [&](SpiralBevelParameters& p, double x) { p.cuts[cut].radial_distance_mm = x; };
+    if (const auto x = search(S, 0.5 * S, radial)) return fmt::format("; {:.4f} mm would do", told(*x));
+    if (const auto x = search(S, 1.5 * S, radial)) return fmt::format("; {:.4f} mm would do", up(*x));
+    return "; another blade_point_radius or center_roll_position is needed";
+  }
+  if (!key.ends_with(".modified_roll_coefficients")) return "";
+  const auto x = search(1, 0, [&](SpiralBevelParameters& p, double share) {
+    for (Cut& cut : p.cuts)
+      for (double& c : cut.modified) c *= share;
+  });
+  return x ? fmt::format("; coefficients of {:.1f} % of them would do", std::floor(1e3 * *x) / 10)
+           : "; smaller coefficients are needed";
+}
+
 /// What would make a gear of one whose surfaces are refused, in words.
 std::string way_out(const SpiralBevelParameters& gear, const std::string& key) {
-  using Set = std::function<void(SpiralBevelParameters&, double)>;
-  const auto search = [&](double from, double to, const Set& set) {
+  const Search search = [&](double from, double to, const Set& set) {
     return that_does(from, to, [&](double x) {
       SpiralBevelParameters other = gear;
       set(other, x);
       return inspected(other).refusals.empty();
     });
   };
-  const auto up = [](double x) { return std::ceil(1e4 * x) / 1e4; };
   const auto all_blades = [](SpiralBevelParameters& p, const auto& set) {
     for (Cut& cut : p.cuts)
       for (Blade& blade : cut.blades) set(blade);
@@ -460,23 +482,7 @@ std::string way_out(const SpiralBevelParameters& gear, const std::string& key) {
     return x ? fmt::format("; a tool_edge_radius of {:.4f} mm or less would do", told(*x))
              : "; a deeper cut or other blades are needed";
   }
-  if (ends(".radial_distance")) {
-    const auto cut = std::size_t(key[4] - '0');
-    const double S = gear.cuts[cut].radial_distance_mm;
-    const auto radial = [&](SpiralBevelParameters& p, double x) { p.cuts[cut].radial_distance_mm = x; };
-    if (const auto x = search(S, 0.5 * S, radial)) return fmt::format("; {:.4f} mm would do", told(*x));
-    if (const auto x = search(S, 1.5 * S, radial)) return fmt::format("; {:.4f} mm would do", up(*x));
-    return "; another blade_point_radius or center_roll_position is needed";
-  }
-  if (ends(".modified_roll_coefficients")) {
-    const auto x = search(1, 0, [&](SpiralBevelParameters& p, double share) {
-      for (Cut& cut : p.cuts)
-        for (double& c : cut.modified) c *= share;
-    });
-    return x ? fmt::format("; coefficients of {:.1f} % of them would do", std::floor(1e3 * *x) / 10)
-             : "; smaller coefficients are needed";
-  }
-  return "";
+  return way_out_by_setting(gear, key, search);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ TEST(WouldHelp, StandsWhereverTheRefusalDoes) {
                                           "chord_tolerance = 0.002", "chord_tolerance = 0.02"));
     return run_program({"run", dir / "job.toml", "--out", dir / "out"});
   };
-  const auto refused = with("0.0004");
+  const auto refused = with("0.0006");
   ASSERT_EQ(refused.exit_code, 1) << refused.err;
   const std::string bound = fmt::format(
       "{:.2f} um", nlohmann::json::parse(file_text(dir / "out/report.json"))["gouge_um"]["bound"].get<double>());
