@@ -257,8 +257,8 @@ CommandOutcome with_mate(const NewRequest& request, CommandOutcome outcome, cons
   if (auto written = app::write_new_file(other.file, mate.proposed.text); !written) return failed(written.error());
   const CommandOutcome more = told(other, mate.proposed, mate.limits);
   if (outcome.exit_code == app::ExitCode::ok) outcome.exit_code = more.exit_code;
-  outcome.summary += more.summary + fmt::format("and of both: toothpath contact {} --mate {} --out DIR\n", request.file,
-                                                fs::path(other.file).filename().string());
+  outcome.summary +=
+      more.summary + fmt::format("and of both: toothpath contact {} --mate {} --out DIR\n", request.file, other.file);
   auto json = nlohmann::ordered_json::parse(outcome.report_json);
   json["mate"] = nlohmann::ordered_json::parse(more.report_json);
   outcome.report_json = json_text(json, 2) + "\n";
