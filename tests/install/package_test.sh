@@ -43,7 +43,7 @@ in_tree --install "$program"
 
 installed=$root/usr/bin/toothpath
 touch "$root/usr/share/toothpath/machines/only_here.toml"
-"$installed" completion machines | grep -qx only_here || fail "the installed program does not look for machines beside itself"
+"$installed" completion machines | grep -x only_here >/dev/null || fail "the installed program does not look for machines beside itself"
 rm "$root/usr/share/toothpath/machines/only_here.toml"
 for shell in bash:bash-completion/completions/toothpath zsh:zsh/vendor-completions/_toothpath fish:fish/vendor_completions.d/toothpath.fish; do
   cmp -s "$root/usr/share/${shell#*:}" <("$installed" completion "${shell%%:*}") || fail "completion of ${shell%%:*} is not that of the program"
