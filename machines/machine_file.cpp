@@ -489,6 +489,8 @@ Result<MachineFileText> open_machine_file(const std::string& path) {
   if (!tree) return tree.error();
   toml::ReaderFindings findings(machine_words());
   toml::TableReader root(*tree, "", findings);
+  if (tree->table()->find("gear") && !tree->table()->find("kind"))
+    root.refuse("gear", "[gear]: this is a job file, a machine file is needed here");
   const auto kind = read_kind(root);
   if (!kind) return findings.errors.front();
   return MachineFileText{path, std::move(text).value(),

@@ -62,9 +62,9 @@ struct MachineFileText {
 /// File names of the installed machines, "t600s.toml", in order, each once.
 [[nodiscard]] std::vector<std::string> installed_machines();
 
-/// Path of the machine file that a job calls `name`: `job_directory/name` if it exists and is not the job itself, else
+/// Path of the machine file that a job calls `name`: `job_directory/name` if it is a file and not the job itself, else
 /// `name` among the installed machines (a leading "machines/" is dropped there). ".toml" may be left out. An absolute
-/// name is taken as it is.
+/// name is taken as it is. A folder is named only where no file is: to open it says that it is none.
 /// Errors (file_access): found nowhere; the message proposes a near name and lists the installed machines.
 [[nodiscard]] Result<std::string> find_machine_file(const std::string& name, const std::string& job_directory,
                                                     const std::string& job_file = {});

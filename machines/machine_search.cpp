@@ -72,9 +72,14 @@ Result<std::string> find_machine_file(const std::string& name, const std::string
   if (name.empty() || name.find('\0') != std::string::npos)
     return fail_as(DiagnosticKind::file_access, "machine file has no name");
   const fs::path wanted(name);
+  std::string folder;  // of this name, such as the results of a job named like its machine: taken last, its opening
+                       // says what it is
   for (const char* ending : {"", ".toml"}) {
     const fs::path beside = fs::path(job_directory) / (name + ending);  // an absolute name replaces the directory
-    if (is_there(beside) && !is_same(beside, job_file)) return beside.string();
+    if (!is_there(beside) || is_same(beside, job_file)) continue;
+    std::error_code error;
+    if (!fs::is_directory(beside, error)) return beside.string();
+    folder = beside.string();
   }
   if (wanted.is_relative()) {
     const fs::path plain = wanted.parent_path() == "machines" ? wanted.filename() : wanted;
@@ -84,6 +89,7 @@ Result<std::string> find_machine_file(const std::string& name, const std::string
           if (const fs::path path = fs::path(directory) / (plain.string() + ending); is_there(path))
             return path.string();
   }
+  if (!folder.empty()) return folder;
   const std::vector<std::string> installed = installed_machines();
   return fail_as(DiagnosticKind::file_access,
                  "machine file \"{}\" is neither beside the job nor installed{}; installed are: {}", name,

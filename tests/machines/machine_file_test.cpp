@@ -452,6 +452,19 @@ TEST(FindMachineFile, BesideTheJobFirstThenInstalled) {
   EXPECT_EQ(list.find("apt_free.toml, fanuc_ac.toml, "), 0u);
   EXPECT_EQ(none.error().message,
             "machine file \"no_such.toml\" is neither beside the job nor installed; installed are: " + list);
+  // A folder of that name, such as the results of a job named like its machine, hides no installed machine.
+  fs::create_directory(dir / "fanuc_ac");
+  const auto past_a_folder = machines::find_machine_file("fanuc_ac", dir.path());
+  ASSERT_TRUE(past_a_folder) << past_a_folder.error().message;
+  EXPECT_TRUE(fs::equivalent(*past_a_folder, TOOTHPATH_SOURCE_DIR "/machines/data/fanuc_ac.toml"));
+  fs::create_directory(dir / "alone");
+  EXPECT_TRUE(fs::equivalent(machines::find_machine_file("alone", dir.path()).value(), dir / "alone"));
+  // A job of that name says what it is.
+  std::ofstream(dir / "haas_ac.toml") << "schema = 1\n[gear]\ntype = \"face_gear\"\n";
+  const auto job = machines::open_machine_file(machines::find_machine_file("haas_ac", dir.path()).value());
+  ASSERT_FALSE(job);
+  EXPECT_EQ(job.error().message, "[gear]: this is a job file, a machine file is needed here");
+  EXPECT_EQ(job.error().position.line, 2);
   // The ending may be left out, and a misspelt name brings the near one.
   const auto plain = machines::find_machine_file("xyzac_trt", dir.path());
   ASSERT_TRUE(plain) << plain.error().message;
