@@ -20,6 +20,7 @@
 #include <sstream>
 #include <thread>
 
+#include "app/base/listed.h"
 #include "app/base/out_of_memory.h"
 #include "app/base/output_dir.h"
 #include "app/command_tree.h"
@@ -161,7 +162,7 @@ std::string installed_names() {
   return names;
 }
 
-/// Hidden commands that print what is made of all the others: scripts of the shells, the manual page.
+/// Commands that print what is made of all the others: scripts of the shells, the manual page.
 void add_self_description(CLI::App& app, std::vector<Subcommand>& commands) {
   const auto printing = [](std::function<std::string()> text) {
     return [text = std::move(text)](const commands::CommonRequest&) {
@@ -170,18 +171,19 @@ void add_self_description(CLI::App& app, std::vector<Subcommand>& commands) {
       return outcome;
     };
   };
-  const auto add = [&app](const char* name, const char* description) {
+  const auto add = [&app](const char* name, const char* description, std::initializer_list<const char*> examples) {
     CLI::App* sub = app.add_subcommand(name, description);
     sub->fallthrough();
-    sub->group("");
+    commands::OptionSet(*sub).examples(examples);
     return sub;
   };
-  CLI::App* manual = add("man-page", "the manual page as roff");
+  CLI::App* manual = add("man-page", "prints the manual page as roff", {"man-page | man -l -"});
   commands.push_back({manual, manual->get_name(),
                       printing([&app] { return help::man_page(describe_program(app, kVersion), TOOTHPATH_DATE); })});
-  CLI::App* completion = add("completion", "a script that completes the commands in a shell, or words for it");
+  CLI::App* completion = add("completion", "prints a script that completes commands and options in a shell",
+                             {"completion bash > ~/.local/share/bash-completion/completions/toothpath"});
   auto what = std::make_shared<std::string>();
-  completion->add_option("WHAT", *what, "of which shell; machines: the names of the installed ones")
+  completion->add_option("WHAT", *what, "the shell; machines: the names of the installed ones, for the scripts")
       ->required()
       ->check(CLI::IsMember({"bash", "zsh", "fish", "machines"}));
   commands.push_back({completion, completion->get_name(), printing([&app, what] {
@@ -217,6 +219,14 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
+/// Of the options and arguments that the command needs.
+std::vector<std::string> missing_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    if (option->get_required() && option->count() == 0) names.push_back(option->get_name());
+  return names;
+}
+
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::App* level = &app; level; level = level->get_parent())
@@ -242,7 +252,10 @@ std::string usage_error(const CLI::App& app, const CLI::Error& error) {
     return left.empty() ? "a command is missing; " + known
                         : fmt::format("unknown command \"{}\"{}; {}", left.front(),
                                       toml::did_you_mean(left.front(), commands), known);
-  return left.empty() ? error.what() : fmt::format("\"{}\" is one word too many", left.front());
+  if (!left.empty()) return fmt::format("\"{}\" is one word too many", left.front());
+  const std::vector<std::string> missing = missing_names(at);
+  return missing.empty() ? error.what()
+                         : fmt::format("{} {} required", app::listed(missing), missing.size() == 1 ? "is" : "are");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "app/command_tree.h"
 
 #include <CLI/CLI.hpp>
+#include <sstream>
 
 namespace toothpath {
 namespace {
@@ -43,6 +44,9 @@ help::Command describe(const CLI::App& app) {
     entry.help = option->get_description();
     command.options.push_back(std::move(entry));
   }
+  std::istringstream footer(app.get_footer());
+  for (std::string line; std::getline(footer, line);)
+    if (line.starts_with("  toothpath ")) command.examples.push_back(line.substr(2));
   for (const CLI::App* inner : app.get_subcommands([](const CLI::App* sub) { return !sub->get_group().empty(); }))
     command.commands.push_back(describe(*inner));
   return command;

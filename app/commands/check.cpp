@@ -226,6 +226,7 @@ void add_check(Commands& commands) {
       "check", "proves an NC program that exists already against its job",
       [](OptionSet& set, CheckRequest& request) {
         job_options(set, request);
+        set.examples({"check gear.toml out/program.nc", "check gear.toml edited.nc --stock out/blank.stl"});
         set.file("PROGRAM", request.program_file, "NC program in the dialect of the job's machine");
         set.files("--stock", request.stock_files,
                   "closed mesh of the stock before the program (STL or OBJ, mm, gear frame); repeatable");

@@ -30,7 +30,7 @@ struct CommonRequest {
   bool color = false;  ///< of the summary
 };
 
-/// Of the commands `name JOB --out DIR`; others build theirs on it.
+/// Of the commands `name JOB [--out DIR]`; others build theirs on it.
 struct JobRequest : CommonRequest {
   std::string job_file;
   std::string out_dir;
@@ -43,6 +43,13 @@ using app::failed;
 inline void name_file(std::vector<Diagnostic>& errors, const std::string& job_file) {
   for (Diagnostic& error : errors)
     if (error.position.file.empty() && error.kind == DiagnosticKind::refused_input) error.position.file = job_file;
+}
+
+/// A standard folder that cannot be written: its user gave no --out, and may not know that there is one.
+inline void name_out(std::vector<Diagnostic>& errors, const std::string& out_dir) {
+  for (Diagnostic& error : errors)
+    if (error.kind == DiagnosticKind::file_access && error.position.file == out_dir)
+      error.message += "; --out DIR gives another folder";
 }
 
 /// Commands below a command: `study stability`.
@@ -75,9 +82,14 @@ template <typename Request, typename Options, typename Run>
   return {group, name, description, [options, run](OptionSet& set) -> Command::Action {
             auto request = std::make_shared<Request>();
             options(set, *request);
-            return [request, run](const CommonRequest& common) {
+            return [request, run, out = set.out_dir()](const CommonRequest& common) {
               static_cast<CommonRequest&>(*request) = common;
+              std::string job_file;
+              if constexpr (std::is_base_of_v<JobRequest, Request>) job_file = request->job_file;
+              const bool standard = out.value && out.value->empty();
+              if (standard) *out.value = standard_out_dir(job_file, out.below);
               CommandOutcome outcome = run(*request);
+              if (standard) name_out(outcome.errors, *out.value);
               if constexpr (std::is_base_of_v<JobRequest, Request>) name_file(outcome.errors, request->job_file);
               return outcome;
             };

@@ -331,6 +331,7 @@ void add_compare(Commands& commands) {
         set.file("SHAPED", request.job_file, "job file with [shaping]");
         set.file("MILLED", request.other_job, "job file with operations of the same gear");
         set.out_dir(request.out_dir);
+        set.examples({"compare shaped.toml milled.toml"});
       },
       run_compare));
 }

@@ -153,6 +153,7 @@ void add_contact(Commands& commands) {
       "contact", "rolls the gear with its mate: contact pattern, transmission error, pairs in contact",
       [](OptionSet& set, ContactRequest& request) {
         job_options(set, request);
+        set.examples({"contact gear.toml", "contact pinion.toml --mate wheel.toml --offset-error 0.02"});
         set.whole_number("--pinion-teeth", request.pinion_teeth,
                          "teeth of the pinion (default: mate_teeth, else the shaper's)", job::kPinionTeeth);
         set.number("--offset-error", request.offset_error_mm, "pinion axis off its place across the tooth",

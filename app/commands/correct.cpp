@@ -10,6 +10,8 @@ void add_correct(Commands& commands) {
       "correct", "like run, but compensated for measured deviations",
       [](OptionSet& set, RunRequest& request) {
         job_options(set, request);
+        set.examples({"correct gear.toml --measured measured.csv",
+                      "correct gear.toml --measured first.csv --measured second.csv"});
         set.required_files("--measured", request.measured.files,
                            "what was measured: inspection.csv with a column deviation_um, results as DMIS, or lines "
                            "x y z [i j k]; several: one after each cut");

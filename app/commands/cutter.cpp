@@ -270,6 +270,7 @@ void add_cutter(Commands& commands) {
       "cutter", "designs the finger mill of a bevel gear and judges the mills that are there",
       [](OptionSet& set, CutterRequest& request) {
         job_options(set, request);
+        set.examples({"cutter pinion.toml", "cutter pinion.toml --cutter-of wheel.toml"});
         set.whole_number("--tool", request.tool_number, "draw this tool of the job instead of the designed mill",
                          job::kToolNumber);
         set.text("--cutter-of", request.other_job,

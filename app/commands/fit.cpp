@@ -84,8 +84,6 @@ process::ValueOrErrors<FittedJob> fitted_job(const FitRequest& request, const jo
 }
 
 CommandOutcome run_fit(const FitRequest& request) {
-  if (request.points.empty())
-    return failed(Diagnostic{DiagnosticKind::usage, {}, "--points is missing: a file with points of the flanks"});
   if (!request.write_file.empty())
     if (auto fresh = app::check_new_file(request.write_file, "--write"); !fresh) return failed(fresh.error());
   const auto unit = app::read_length_unit("--points-unit", request.points_unit);
@@ -138,9 +136,11 @@ void add_fit(Commands& commands) {
       "fit", "the numbers of a gear that come nearest to measured points",
       [](OptionSet& set, FitRequest& request) {
         job_options(set, request);
-        set.text("--points", request.points,
-                 "measured points of its flanks, any teeth, any order: x y z[ i j k], DMIS, or an inspection grid",
-                 "FILE");
+        set.examples(
+            {"fit gear.toml --points measured.csv", "fit gear.toml --points measured.csv --write fitted.toml"});
+        set.required_text(
+            "--points", request.points,
+            "measured points of its flanks, any teeth, any order: x y z[ i j k], DMIS, or an inspection grid", "FILE");
         set.word("--points-unit", request.points_unit, "unit of x, y and z for which the file states none", "UNIT",
                  app::kLengthUnits);
         set.number("--ball-diameter", request.ball_diameter_mm,

@@ -267,6 +267,7 @@ void add_forces(Commands& commands) {
       "forces", "tooth forces of a bevel pair over the apex cone distance, and what balances them",
       [](OptionSet& set, ForcesRequest& request) {
         job_options(set, request);
+        set.examples({"forces pinion.toml --torque 120"});
         set.number("--torque", request.torque_Nm, "torque on the gear of the job; overrides torque in its [load]",
                    job::kTorque);
       },

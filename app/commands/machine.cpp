@@ -233,6 +233,7 @@ void add_machine(Commands& commands) {
   commands.push_back(command_of<MachineRequest>(
       "show", "limits, chain, senses and assumed values of a machine",
       [](OptionSet& set, MachineRequest& request) {
+        set.examples({"machine show xyzac_trt", "machine show mine.toml --out machine"});
         set.file("MACHINE", request.machine_file, kMachine);
         set.out_dir_or_none(request.out_dir,
                             "directory for machine.html and machine.svg; without it only the text is printed");
@@ -241,8 +242,9 @@ void add_machine(Commands& commands) {
   commands.push_back(command_of<MachineRequest>(
       "test", "programs that hold the tip of a test bar on one point while the rotary axes turn: run them in air",
       [](OptionSet& set, MachineRequest& request) {
+        set.examples({"machine test mine.toml", "machine test mine.toml --tool-length 80"});
         set.file("MACHINE", request.machine_file, kMachine);
-        set.out_dir(request.out_dir, "folder for the programs and their page; created if missing");
+        set.out_dir(request.out_dir);
         set.number("--tool-length", request.tool_length_mm,
                    "gauge line to the tip of the test bar (default: 100, 60 or 30, what fits)", {1, 5000, " mm"});
       },

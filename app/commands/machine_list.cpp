@@ -77,7 +77,8 @@ CommandOutcome list_machines(const CommonRequest&) {
 
 void add_machine_list(Commands& commands) {
   commands.push_back(command_of<CommonRequest>(
-      "list", "the installed machines, a line each", [](OptionSet&, CommonRequest&) {}, list_machines, &kMachines));
+      "list", "the installed machines, a line each",
+      [](OptionSet& set, CommonRequest&) { set.examples({"machine list"}); }, list_machines, &kMachines));
 }
 
 }  // namespace toothpath::commands

@@ -155,7 +155,7 @@ CommandOutcome told(const NewRequest& request, const Proposed& proposed, const p
       for (const auto& line : json["proof"].value(key, nlohmann::ordered_json::array()))
         out += fmt::format("    {} {}\n", std::string_view(key) == "reasons" ? "because   " : "would help",
                            line.get<std::string>());
-  out += fmt::format("next: toothpath {} {} --out DIR\n",
+  out += fmt::format("next: toothpath {} {}\n",
                      proposed.draft.wishes.route == proposal::Route::shaped ? "shaper" : "run", request.file);
   outcome.summary = out;
   outcome.report_json = json_text(json, 2) + "\n";
@@ -258,7 +258,7 @@ CommandOutcome with_mate(const NewRequest& request, CommandOutcome outcome, cons
   const CommandOutcome more = told(other, mate.proposed, mate.limits);
   if (outcome.exit_code == app::ExitCode::ok) outcome.exit_code = more.exit_code;
   outcome.summary +=
-      more.summary + fmt::format("and of both: toothpath contact {} --mate {} --out DIR\n", request.file, other.file);
+      more.summary + fmt::format("and of both: toothpath contact {} --mate {}\n", request.file, other.file);
   auto json = nlohmann::ordered_json::parse(outcome.report_json);
   json["mate"] = nlohmann::ordered_json::parse(more.report_json);
   outcome.report_json = json_text(json, 2) + "\n";
@@ -290,7 +290,14 @@ CommandOutcome make_and_write(const NewRequest& request, Choice& choice, bool as
 
 CommandOutcome run_new(const NewRequest& asked) {
   NewRequest request = asked;
-  if (request.file.empty()) return failed(usage("-o is missing: the job file to write"));
+  if (request.file.empty()) {
+    std::vector<Diagnostic> missing = usage("-o is missing: the job file to write");
+    if (app::Dialog dialog(request.quiet); !dialog.asks()) {
+      const auto more = questions::missing_in(request, dialog);
+      missing.insert(missing.end(), more.begin(), more.end());
+    }
+    return failed(std::move(missing));
+  }
   std::vector<std::string> files = {request.file};
   if (request.with_mate) files.push_back(mate_file(request.file));
   for (const std::string& file : files)
@@ -327,6 +334,7 @@ CommandOutcome run_new(const NewRequest& asked) {
 }
 
 void new_options(OptionSet& set, NewRequest& request) {
+  set.examples({"new -o gear.toml", "new --gear face --teeth 60 --module 2 --machine xyzac_large -o gear.toml"});
   set.word("--gear", request.gear, "kind of gear", "KIND", proposal::gear_words());
   set.word("--cut", request.route, "how it is cut; bevel_herringbone: finger", "WAY", proposal::route_words());
   set.text("--machine", request.machine, "a machine file, or the name of an installed machine", "NAME");

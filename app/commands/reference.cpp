@@ -1,4 +1,6 @@
 // `toothpath reference job|machine`: all keys of the files that people write, as a page or as a schema.
+#include <fmt/format.h>
+
 #include "app/commands/command.h"
 #include "app/reference/markdown.h"
 #include "app/reference/schema.h"
@@ -13,7 +15,8 @@ struct ReferenceRequest : CommonRequest {
 Command reference_of(const char* name, const char* description, std::string (*markdown)(), std::string (*schema)()) {
   return command_of<ReferenceRequest>(
       name, description,
-      [](OptionSet& set, ReferenceRequest& request) {
+      [words = fmt::format("reference {}", name)](OptionSet& set, ReferenceRequest& request) {
+        set.examples({(words + " > keys.md").c_str(), (words + " --schema > schema.json").c_str()});
         set.flag("--markdown", request.markdown, "as a page in Markdown; also without this option");
         set.flag("--schema", request.schema, "as a JSON schema (draft 7), for TOML language servers");
       },

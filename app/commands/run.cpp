@@ -109,6 +109,7 @@ void add_run(Commands& commands) {
       "run", "plans the tool paths, writes the NC program and proves it",
       [](OptionSet& set, RunRequest& request) {
         job_options(set, request);
+        set.examples({"run gear.toml", "run gear.toml --restart 2:14 --out restart"});
         set.text("--restart", request.restart,
                  "operation and tooth, both from 0: the program begins there; what comes before is taken as done",
                  "OP:TOOTH");

@@ -131,8 +131,13 @@ CommandOutcome run_shaper(const JobRequest& request) {
 }
 
 void add_shaper(Commands& commands) {
-  commands.push_back(command_of<JobRequest>("shaper", "limits and gear-shaper set-up: sheet and stroke program",
-                                            job_options, run_shaper));
+  commands.push_back(command_of<JobRequest>(
+      "shaper", "limits and gear-shaper set-up: sheet and stroke program",
+      [](OptionSet& set, JobRequest& request) {
+        job_options(set, request);
+        set.examples({"shaper gear.toml"});
+      },
+      run_shaper));
 }
 
 }  // namespace toothpath::commands

@@ -101,6 +101,7 @@ void add_surface(Commands& commands) {
       "surface", "limits, inspection points and meshes of the gear; plans nothing",
       [](OptionSet& set, SurfaceRequest& request) {
         job_options(set, request);
+        set.examples({"surface gear.toml", "surface gear.toml --step --out cad"});
         cad_options(set, request.cad);
         set.text("--rexs", request.rexs_file,
                  "the gear and the settings of its generator as REXS 1.7, with the inspection grid; a new file",

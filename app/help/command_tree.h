@@ -35,7 +35,8 @@ struct Command {
   std::string description;
   std::vector<Argument> arguments;  ///< all of them required
   std::vector<Option> options;
-  std::vector<Command> commands;  ///< below this one
+  std::vector<Command> commands;           ///< below this one
+  std::vector<std::string> examples = {};  ///< "toothpath run gear.toml"
 };
 
 struct Program {

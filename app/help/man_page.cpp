@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cctype>
 #include <utility>
 
@@ -41,7 +42,7 @@ std::string option_entry(const Option& option) {
       option.value && option.repeatable ? " ..." : "", roff(option.help), option.required ? " (required)" : "");
 }
 
-/// "toothpath run [OPTIONS] --out DIR JOB".
+/// "toothpath correct --measured FILE JOB".
 std::string synopsis(const CommandAt& at) {
   std::string out = "\\fBtoothpath " + roff(at.path) + "\\fR";
   for (const Option& option : at.command->options)
@@ -57,6 +58,12 @@ std::string command_section(const CommandAt& at) {
     out += fmt::format(".TP\n\\fI{}\\fR\n{}\n", roff(argument.name), roff(argument.help));
   for (const Option& option : at.command->options)
     if (option.names.back() != "--help") out += option_entry(option);
+  if (!at.command->examples.empty()) out += at.command->examples.size() > 1 ? ".PP\nExamples:\n" : ".PP\nExample:\n";
+  for (const std::string& example : at.command->examples) {
+    std::string words = roff(example);  // in one line
+    std::replace(words.begin(), words.end(), '\n', ' ');
+    out += fmt::format(".br\n\\fB{}\\fR\n", words);
+  }
   return out;
 }
 

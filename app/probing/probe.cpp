@@ -4,6 +4,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/base/listed.h"
 #include "app/commands/command.h"
 #include "app/commands/surface.h"
 #include "app/job/file.h"
@@ -167,11 +168,12 @@ CommandOutcome solve(const ProbeRequest& request, const Inputs& in, app::OutputD
 }
 
 CommandOutcome run_probe(const ProbeRequest& request) {
-  for (const auto& [name, given] : {std::pair("--ball-diameter", request.ball_mm.has_value()),
-                                    {"--probe-length", request.length_mm.has_value()},
-                                    {"--tool", request.tool.has_value()}})
-    if (!given && (request.results.empty() || std::string_view(name) == "--ball-diameter"))
-      return app::failed(fail_as(DiagnosticKind::usage, "probe needs {}", name));
+  const bool writes = request.results.empty();
+  std::vector<std::string> missing;
+  if (!request.ball_mm) missing.emplace_back("--ball-diameter");
+  if (writes && !request.length_mm) missing.emplace_back("--probe-length");
+  if (writes && !request.tool) missing.emplace_back("--tool");
+  if (!missing.empty()) return app::failed(fail_as(DiagnosticKind::usage, "probe needs {}", app::listed(missing)));
   std::vector<std::string> inputs = {request.job_file};
   if (!request.results.empty()) inputs.push_back(request.results);
   const std::string made = request.results.empty() ? std::string(kProgram) + "." : kMeasured;
@@ -189,9 +191,12 @@ void add_probe(commands::Commands& commands) {
       "probe", "writes a program that touches the blank or its teeth; finds from the results where the gear stands",
       [](commands::OptionSet& set, ProbeRequest& request) {
         commands::job_options(set, request);
-        set.number("--ball-diameter", request.ball_mm, "of the probe", job::kBallDiameter);
-        set.number("--probe-length", request.length_mm, "from the gauge line to the centre of its ball", kLength);
-        set.whole_number("--tool", request.tool, "number of the probe", kTool);
+        set.examples({"probe gear.toml --ball-diameter 2 --probe-length 120 --tool 20",
+                      "probe gear.toml --ball-diameter 2 --results touches.txt"});
+        set.number("--ball-diameter", request.ball_mm, "of the probe; needed", job::kBallDiameter);
+        set.number("--probe-length", request.length_mm,
+                   "from the gauge line to the centre of its ball; needed without --results", kLength);
+        set.whole_number("--tool", request.tool, "number of the probe; needed without --results", kTool);
         set.number("--allowance", request.allowance_mm, "that still stands on the flanks (default 0)", kAllowance);
         set.number("--feed", request.feed, "of a touch (default 50)", kFeed);
         set.flag("--blank", request.blank, "the turned blank is touched, not teeth: top and rim, or its face cone");

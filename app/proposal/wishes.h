@@ -109,6 +109,11 @@ struct Question {
 [[nodiscard]] constexpr bool stands_for_another(Quantity what) {
   return what == Quantity::pitch_angle || what == Quantity::cone_distance || what == Quantity::mean_cone_distance;
 }
+/// Nobody can propose it, whatever the other answers are.
+[[nodiscard]] constexpr bool only_the_user_knows(Quantity what) {
+  return what == Quantity::teeth || what == Quantity::mate_teeth || what == Quantity::module ||
+         stands_for_another(what);
+}
 /// Does a gear of this kind have the quantity?
 [[nodiscard]] bool belongs(const Question& question, Gear gear);
 /// What is proposed after the answers so far; nothing: only the user knows.

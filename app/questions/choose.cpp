@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 
 #include "app/questions/steps.h"
@@ -31,6 +32,13 @@ Expected<Choice, std::vector<Diagnostic>> once(const Given& request, Dialog& dia
   return choice;
 }
 
+/// An option that was not given is no news without the others that are missing.
+std::vector<Diagnostic> with_all_that_is_missing(const Given& request, Dialog& dialog, std::vector<Diagnostic> errors) {
+  std::vector<Diagnostic> missing = missing_in(request, dialog);
+  const auto is_first = [&](const Diagnostic& one) { return one.message == errors.front().message; };
+  return std::any_of(missing.begin(), missing.end(), is_first) ? missing : errors;
+}
+
 /// The option with which all of these begin, if one was asked for: it is asked for again. Errors of other kinds end.
 bool asked_again(const std::vector<Diagnostic>& errors, Dialog& dialog) {
   for (const Diagnostic& error : errors) {
@@ -50,8 +58,9 @@ Expected<Choice, std::vector<Diagnostic>> choose(const Given& request, app::Dial
     auto chosen = once(request, dialog);
     auto* errors = chosen.refused();
     if (!errors) return chosen;
+    if (!dialog.asks()) return with_all_that_is_missing(request, dialog, std::move(*errors));
     if (dialog.went_back()) dialog.begin_again();
-    else if (!dialog.asks() || !asked_again(*errors, dialog)) return chosen;
+    else if (!asked_again(*errors, dialog)) return chosen;
   }
 }
 

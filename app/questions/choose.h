@@ -25,6 +25,9 @@ struct Choice {
 /// asked for again from the number that is in the way. Refused: what is missing or wrong, by its option.
 [[nodiscard]] Expected<Choice, std::vector<Diagnostic>> choose(const Given& given, app::Dialog& dialog);
 
+/// What nobody says and nobody can propose, all of it at once, where nothing is asked for.
+[[nodiscard]] std::vector<Diagnostic> missing_in(const Given& request, app::Dialog& dialog);
+
 /// A job is UTF-8 and its texts are visible; names of files may be any bytes.
 [[nodiscard]] Status can_be_named(const char* option, const std::string& text);
 

@@ -12,6 +12,7 @@ namespace toothpath::questions {
 namespace {
 
 using app::Dialog;
+using proposal::Quantity;
 using proposal::Wishes;
 namespace fs = std::filesystem;
 
@@ -159,6 +160,13 @@ Expected<Wishes, std::vector<Diagnostic>> gear_of_rexs(const Given& request, Dia
   }
 }
 
+Dialog::Answer<std::string> ask_gear(const Given& request, Dialog& dialog) {
+  const bool by_points = request.gear.empty() && !request.points.empty();
+  return dialog.word("--gear", "kind of gear",
+                     by_points ? std::string(word_of(proposal::Gear::flank_grid)) : request.gear,
+                     proposal::gear_words());
+}
+
 /// Kind of gear, and all of one that stands in a file.
 Expected<Wishes, std::vector<Diagnostic>> gear_wished(const Given& request, Dialog& dialog, proposal::Told& notes) {
   using Given = std::vector<std::pair<const char*, bool>>;
@@ -190,10 +198,7 @@ Expected<Wishes, std::vector<Diagnostic>> gear_wished(const Given& request, Dial
       !errors.empty())
     return errors;
   Wishes wishes;
-  const auto gear = dialog.word(
-      "--gear", "kind of gear",
-      request.gear.empty() && !request.points.empty() ? std::string(word_of(proposal::Gear::flank_grid)) : request.gear,
-      proposal::gear_words());
+  const auto gear = ask_gear(request, dialog);
   if (auto* errors = gear.refused()) return *errors;
   wishes.gear = proposal::gear_of(gear.value());
   if (!has_hand(*wishes.gear))
@@ -223,6 +228,36 @@ Expected<proposal::Wishes, std::vector<Diagnostic>> kinds_wished(const Given& re
   if (wishes.machine.empty())
     if (auto asked = ask_machine(wishes, request, dialog); auto* errors = asked.refused()) return std::move(*errors);
   return wishes;
+}
+
+std::vector<Diagnostic> missing_in(const Given& request, app::Dialog& dialog) {
+  std::vector<Diagnostic> all;
+  const auto add = [&](std::vector<Diagnostic> errors) { all.insert(all.end(), errors.begin(), errors.end()); };
+  std::optional<proposal::Gear> gear;
+  if (request.rexs.empty()) {
+    const auto word = ask_gear(request, dialog);
+    if (const auto* errors = word.refused()) add(*errors);
+    else gear = proposal::gear_of(word.value());
+  }
+  Wishes wishes;
+  wishes.route = proposal::route_of(request.route);
+  if (request.machine.empty())
+    if (const auto asked = ask_machine(wishes, request, dialog); const auto* errors = asked.refused()) add(*errors);
+  if (!gear) return all;
+  if (gear == proposal::Gear::flank_grid && request.points.empty())
+    add(usage("--points is missing: a file with the points of both flanks of one space"));
+  const auto said = [&](Quantity q) {
+    const auto at = static_cast<std::size_t>(q);
+    return request.whole[at].has_value() || request.numbers[at].has_value();
+  };
+  const bool by_cone = said(Quantity::cone_distance) || said(Quantity::mean_cone_distance);
+  for (const proposal::Question& q : proposal::questions()) {
+    if (!belongs(q, *gear) || !only_the_user_knows(q.what) || stands_for_another(q.what) || said(q.what)) continue;
+    if (q.what == Quantity::module && by_cone) continue;
+    const auto asked = dialog.number({q.option, q.text, q.range, q.whole}, {}, {});
+    if (const auto* errors = asked.refused()) add(*errors);
+  }
+  return all;
 }
 
 }  // namespace toothpath::questions

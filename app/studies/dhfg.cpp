@@ -177,6 +177,7 @@ void add_dhfg(commands::Commands& commands) {
         set.text("--file", request.study_file, "study file (TOML); without it the literature's levels and no milling",
                  "FILE");
         set.out_dir(request.out_dir);
+        set.examples({"study dhfg", "study dhfg --file trials.toml --quick"});
         set.flag("--quick", request.quick, "coarse tolerances of the planned paths");
         set.text("--shard", request.shard, samples::kShardHelp, "i/n");
       },

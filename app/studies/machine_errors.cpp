@@ -116,6 +116,7 @@ void add_machine_errors(commands::Commands& commands) {
       "machine-errors", "what errors of the machine cost on the flank, by many samples through the proof",
       [](commands::OptionSet& set, MachineErrorsRequest& request) {
         commands::job_options(set, request);
+        set.examples({"study machine-errors gear.toml", "study machine-errors gear.toml --error C.pivot=5 --only"});
         set.whole_number("--samples", request.samples,
                          "samples of each error alone, and of all together: 1 to 100000 (24)", {1, 100000});
         set.whole_number("--seed", request.seed, "of the random numbers: 0 to 2147483647 (1)", {0, 2147483647});

@@ -74,6 +74,7 @@ void add_merge(commands::Commands& commands) {
   commands.push_back(commands::command_of<MergeRequest>(
       "merge", "the shards of a study put together",
       [](commands::OptionSet& set, MergeRequest& request) {
+        set.examples({"study merge out/study_machine-errors"});
         set.file("DIR", request.directory, "directory that the shards wrote into (their --out)");
       },
       study_merge, &commands::kStudies));

@@ -128,8 +128,11 @@ commands::CommandOutcome study_stability(const StabilityRequest& request) {
 void add_stability(commands::Commands& commands) {
   commands.push_back(commands::command_of<StabilityRequest>(
       "stability", "extreme gears and machine poses, double against 50 digits",
-      [](commands::OptionSet& set, StabilityRequest& request) { set.out_dir(request.out_dir); }, study_stability,
-      &commands::kStudies));
+      [](commands::OptionSet& set, StabilityRequest& request) {
+        set.out_dir(request.out_dir);
+        set.examples({"study stability"});
+      },
+      study_stability, &commands::kStudies));
 }
 
 }  // namespace toothpath::studies

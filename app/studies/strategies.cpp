@@ -313,6 +313,7 @@ void add_strategies(commands::Commands& commands) {
       "strategies", "the flanks of a job by the side of its mill and by its ball: hours, what is left, what bends",
       [](commands::OptionSet& set, StrategiesRequest& request) {
         job_options(set, request);
+        set.examples({"study strategies gear.toml"});
         set.whole_number("--strips", request.strips,
                          "most strips of a flank that are tried; without: one more than the job's plan has",
                          {1, path::kMostStrips});

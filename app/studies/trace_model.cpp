@@ -134,6 +134,7 @@ void add_trace_model(commands::Commands& commands) {
       "trace-model", "section-sweep models of a bevel gear against its envelope",
       [](commands::OptionSet& set, TraceModelRequest& request) {
         job_options(set, request);
+        set.examples({"study trace-model pinion.toml"});
         set.flag("--quick", request.quick, "a coarser grid");
       },
       study_trace_model, &commands::kStudies));

@@ -316,6 +316,7 @@ void add_work_precision(commands::Commands& commands) {
       "work-precision", "vary the tolerances of a job: what they cost and what they buy",
       [](commands::OptionSet& set, WorkPrecisionRequest& request) {
         job_options(set, request);
+        set.examples({"study work-precision gear.toml --quick"});
         set.flag("--quick", request.quick, "three factors a tolerance instead of five, and none for all together");
       },
       study_work_precision, &commands::kStudies));

@@ -25,7 +25,6 @@ TEST(CommandLine, UsageErrorsAreTwo) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
                                                     {"bogus"},
                                                     {"surface"},
-                                                    {"surface", kQuick},
                                                     {"surface", kQuick, "--out", "x", "--bogus"},
                                                     {"surface", kQuick, "--out", "x", "--threads", "nan"},
                                                     {"surface", kQuick, "--out", "x", "--threads", "0"},
@@ -44,7 +43,10 @@ TEST(CommandLine, UsageErrorsNameTheWord) {
       {{"run", kQuick, "two", "--out", "x"}, "\"two\" is one word too many"},
       {{"--jsn", "run", kQuick, "--out", "x"}, "unknown option --jsn; did you mean \"--json\"?"},
       {{"run"}, "JOB is required"},
-      {{"run", kQuick}, "--out is required"},
+      {{"correct"}, "JOB and --measured are required"},
+      {{"check", "--threads", "1"}, "JOB and PROGRAM are required"},
+      {{"fit", kQuick}, "--points is required"},
+      {{"completion"}, "WHAT is required"},
       {{"r\x1b[31m"}, "unknown command \"r\\x1B[31m\"; commands are: "},
   };
   for (const auto& [arguments, words] : cases) {
@@ -52,6 +54,65 @@ TEST(CommandLine, UsageErrorsNameTheWord) {
     EXPECT_EQ(run.exit_code, 2);
     EXPECT_TRUE(run.err.starts_with(words)) << run.err;
   }
+}
+
+// What is missing is not told one option at a time.
+TEST(CommandLine, NamesAllThatIsMissingAtOnce) {
+  const TestDir dir;
+  const std::pair<std::vector<std::string>, std::string> cases[] = {
+      {{"probe", kQuick}, "error: probe needs --ball-diameter, --probe-length and --tool\n"},
+      {{"probe", kQuick, "--tool", "9"}, "error: probe needs --ball-diameter and --probe-length\n"},
+      {{"probe", kQuick, "--results", "touches.txt"}, "error: probe needs --ball-diameter\n"},
+  };
+  for (auto [arguments, words] : cases) {
+    arguments.insert(arguments.end(), {"--out", dir / "out"});
+    const auto run = run_program(arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(run.err, words);
+  }
+}
+
+// Without --out a run writes into out/ beside its job, every other command into a folder of its own there.
+TEST(CommandLine, WithoutOutResultsGoBesideTheJob) {
+  const TestDir dir;
+  const std::string shop = dir / "shop";
+  std::filesystem::create_directory(shop);
+  std::filesystem::copy(kSamples + "/offset_shaped.toml", shop + "/gear.toml");
+  const auto run = [&](std::vector<std::string> words, const std::string& from) {
+    Launch launch;
+    launch.arguments = std::move(words);
+    launch.in_child = [from] { (void)!::chdir(from.c_str()); };
+    return run_program(launch);
+  };
+  const auto surface = run({"surface", "shop/gear.toml"}, dir.path());
+  EXPECT_EQ(surface.exit_code, 0) << surface.err;
+  EXPECT_EQ(names_in(shop + "/out"), std::vector<std::string>{"surface"});
+  EXPECT_TRUE(std::filesystem::exists(shop + "/out/surface/limits.json"));
+  const auto shaper = run({"shaper", "gear.toml"}, shop);
+  EXPECT_EQ(shaper.exit_code, 0) << shaper.err;
+  EXPECT_EQ(names_in(shop + "/out"), (std::vector<std::string>{"shaper", "surface"}));
+  const auto machine = run({"machine", "test", "xyzac_trt"}, dir.path());
+  EXPECT_EQ(machine.exit_code, 0) << machine.err;
+  EXPECT_TRUE(std::filesystem::exists(dir / "out/machine_test/machine_test.html"));
+  // What the help says of it.
+  EXPECT_NE(run_program({"run", "--help"}).out.find("(default: out/ beside the job)"), std::string::npos);
+  EXPECT_NE(run_program({"check", "--help"}).out.find("(default: out/check/ beside the job)"), std::string::npos);
+  EXPECT_NE(run_program({"study", "stability", "--help"}).out.find("(default: out/study_stability/)"),
+            std::string::npos);
+}
+
+// Nobody who gave no --out must guess what cannot be written.
+TEST(CommandLine, AFolderBesideTheJobThatCannotBeMadeNamesOut) {
+  const TestDir dir;
+  std::filesystem::copy(kQuick, dir / "gear.toml");
+  write_file(dir / "out", "mine");
+  const auto refused = run_program({"run", dir / "gear.toml"});
+  EXPECT_EQ(refused.exit_code, 4);
+  EXPECT_NE(refused.err.find("; --out DIR gives another folder\n"), std::string::npos) << refused.err;
+  EXPECT_EQ(file_text(dir / "out"), "mine");
+  const auto named = run_program({"run", dir / "gear.toml", "--out", dir / "out"});
+  EXPECT_EQ(named.exit_code, 4);
+  EXPECT_EQ(named.err.find("--out DIR"), std::string::npos) << named.err;
 }
 
 // Every number of every command goes through one reader.

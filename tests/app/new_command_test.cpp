@@ -172,7 +172,18 @@ TEST(New, WithoutATerminalAMissingValueNamesItsOption) {
     EXPECT_EQ(made.exit_code, 2);
     EXPECT_TRUE(made.err.starts_with("error: " + all[left_out] + " is missing: ")) << made.err;
   }
-  EXPECT_EQ(run_program(Words{"new", "--gear", "face"}).err, "error: -o is missing: the job file to write\n");
+  // All of them at once.
+  const Finished bare = run_program(Words{"new"}), bevel = run_program(Words{"new", "--gear", "straight_bevel"});
+  const auto options_of = [](const std::string& err) {
+    Words options;
+    for (std::size_t at = 0; (at = err.find("error: ", at)) != std::string::npos; ++at)
+      options.push_back(err.substr(at + 7, err.find(' ', at + 7) - at - 7));
+    return options;
+  };
+  EXPECT_EQ(options_of(bare.err), (Words{"-o", "--gear", "--machine"})) << bare.err;
+  EXPECT_EQ(options_of(bevel.err), (Words{"-o", "--machine", "--teeth", "--mate-teeth", "--module"})) << bevel.err;
+  EXPECT_EQ(options_of(run_new({"--gear", "flank_grid"}, dir / "job.toml").err),
+            (Words{"--machine", "--points", "--teeth"}));
   EXPECT_FALSE(std::filesystem::exists(dir / "job.toml"));
 }
 

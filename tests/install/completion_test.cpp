@@ -59,6 +59,15 @@ struct OfHelp {
   Words commands, options;
 };
 
+/// Of a command: the lines of its help below "Example:" or "Examples:".
+std::vector<std::string> examples_in(const std::string& help) {
+  std::vector<std::string> out;
+  std::istringstream in(help);
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("  toothpath ")) out.push_back(line.substr(2));
+  return out;
+}
+
 /// Every command as its help shows it.
 std::vector<OfHelp> commands_of_the_help(std::vector<std::string> words = {}) {
   auto asked = words;
@@ -165,6 +174,8 @@ TEST_F(Completion, ProposesWhatAValueMayBe) {
       {"toothpath check --stock ", {"job.toml", "folder", "text.nc"}},
       {"toothpath contact --mate ", {"job.toml", "folder"}},
       {"toothpath run --color al", {"always"}},
+      {"toothpath completion ", {"bash", "zsh", "fish", "machines"}},
+      {"toothpath man", {"man-page"}},
       {"toothpath new --gear ",
        {"face", "double_helical", "offset", "bevel_herringbone", "cylindrical", "cylindrical_double_helical",
         "straight_bevel", "spiral_bevel", "flank_grid"}},
@@ -184,6 +195,36 @@ TEST_F(Completion, ProposesWhatAValueMayBe) {
 
 TEST_F(Completion, TheSyntaxIsThatOfTheShell) {
   for (const char* name : {"bash", "zsh", "fish"}) EXPECT_EQ(shell(fmt::format("{} -n {}", name, scripts_ / name)), "");
+}
+
+/// Examples name their command, options that it has, and as many arguments as it takes; the manual page has them, too.
+TEST(ManualPage, AndHelpShowExamplesThatAreRight) {
+  const std::string page = run_program({"man-page"}).out;
+  for (const OfHelp& command : commands_of_the_help()) {
+    if (!command.commands.empty()) continue;
+    auto asked = command.words;
+    asked.emplace_back("--help");
+    const std::string help = run_program(asked).out, words = fmt::format("toothpath {}", fmt::join(command.words, " "));
+    const auto examples = examples_in(help);
+    EXPECT_TRUE(!examples.empty() && examples.size() <= 2) << words;
+    for (const std::string& example : examples) {
+      EXPECT_TRUE((example + " ").starts_with(words + " ")) << example;
+      EXPECT_NE(page.find("\n\\fB" + std::regex_replace(example, std::regex("-"), "\\-") + "\\fR\n"), std::string::npos)
+          << example;
+      std::vector<std::string> arguments;
+      std::istringstream in(example.substr(10, example.find_first_of("|>") - 10));
+      for (std::string word; in >> word;) arguments.push_back(word);
+      for (const std::string& word : arguments)
+        EXPECT_TRUE(!word.starts_with("-") || command.options.contains(word)) << example << " has " << word;
+      if (help.find("REQUIRED") == std::string::npos) continue;  // it would do something
+      const TestDir dir;
+      Launch launch;
+      launch.arguments = arguments;
+      launch.in_child = [&dir] { (void)!::chdir(dir.path().c_str()); };
+      const auto run = run_program(launch);
+      EXPECT_NE(run.exit_code, 2) << example << ": " << run.err;
+    }
+  }
 }
 
 TEST(ManualPage, NamesEveryCommandAndOption) {
