@@ -1,5 +1,7 @@
 #include "app/proposal/library_shelf.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "cam/tool/cutters.h"
@@ -31,6 +33,10 @@ bool is_there(const std::vector<job::MissingKey>& keys, const std::string& key) 
   return std::any_of(keys.begin(), keys.end(), [&](const job::MissingKey& other) { return other.key == key; });
 }
 
+std::string title_of(int number, const std::string& name) {
+  return name.empty() ? fmt::format("tool {}", number) : fmt::format("tool {} ({})", number, name);
+}
+
 toml::TomlTable with(toml::TomlTable table, const toml::TomlTable& more) {
   for (const toml::TomlEntry& entry : more.entries) {
     std::erase_if(table.entries, [&](const toml::TomlEntry& old) { return old.key == entry.key; });
@@ -41,14 +47,12 @@ toml::TomlTable with(toml::TomlTable table, const toml::TomlTable& more) {
 
 }  // namespace
 
-std::string LibraryShelf::Tool::title() const {
-  return known.name.empty() ? fmt::format("tool {}", number()) : fmt::format("tool {} ({})", number(), known.name);
-}
+std::string LibraryShelf::Tool::title() const { return title_of(number(), known.name); }
 
 Result<LibraryShelf> LibraryShelf::open(const std::string& file, const std::string& unit) {
-  auto read = tool_library::read_tool_library(file, tool_library::library_unit_of(unit));
-  if (!read) return read.error();
   LibraryShelf shelf;
+  auto read = tool_library::read_tool_library(file, tool_library::library_unit_of(unit), &shelf.others_);
+  if (!read) return read.error();
   shelf.file_ = file;
   shelf.unit_ = unit;
   for (tool_library::LibraryTool& known : *read) {
@@ -80,19 +84,59 @@ Status LibraryShelf::say(int number, const toml::TomlTable& keys) {
   return Ok{};
 }
 
-std::vector<const LibraryShelf::Tool*> LibraryShelf::candidates(Route route, const FaceFacts& facts) const {
+std::string LibraryShelf::why_not(const Tool& tool, Route route, const FaceFacts& facts) {
+  if (!tool.reading.wrong.empty()) return tool.reading.wrong.front().message;
   const std::vector<std::string> kinds = words_of(route);
-  const double most = std::max(facts.most_finishing_mm(), facts.most_roughing_mm());
+  const toml::TomlValue* type = value_of(tool, "type");
+  if (type && (!type->text() || std::find(kinds.begin(), kinds.end(), *type->text()) == kinds.end()))
+    return fmt::format("{}: this way to cut takes {}", type->text() ? *type->text() : "no kind",
+                       fmt::join(kinds, " and "));
+  const auto diameter = number_of(tool, "diameter"), flute = number_of(tool, "flute_length"),
+             shank = number_of(tool, "shank_diameter");
+  const double roughs = facts.most_roughing_mm(), finishes = facts.most_finishing_mm();
+  if (diameter && *diameter > std::max(roughs, finishes))
+    return fmt::format("{:g} mm wide: at most {:.3f} mm {}", *diameter, std::max(roughs, finishes),
+                       roughs > finishes ? "enter the tooth spaces to rough them" : "reach the root");
+  // A neck no thicker than the ball follows it; where the ball is not known yet, or the shank, that may be so.
+  const bool neck_may_follow =
+      (!type || *type->text() == kinds.front()) && (!diameter || !shank || *shank <= *diameter);
+  if (flute && *flute < facts.depth && !neck_may_follow)
+    return fmt::format(
+        "flutes of {:g} mm end above the root, {:.2f} mm below the tips, and its shank of {:g} mm is "
+        "thicker than its ball",
+        *flute, facts.depth, *shank);
+  return {};
+}
+
+std::vector<const LibraryShelf::Tool*> LibraryShelf::candidates(Route route, const FaceFacts& facts) const {
   std::vector<const Tool*> found;
+  bool finishes = false;
+  const std::string finisher = words_of(route).back();
   for (const Tool& tool : tools_) {
+    if (!why_not(tool, route, facts).empty()) continue;
+    found.push_back(&tool);
     const toml::TomlValue* type = value_of(tool, "type");
-    const bool fits =
-        (!type || (type->text() && std::find(kinds.begin(), kinds.end(), *type->text()) != kinds.end())) &&
-        number_of(tool, "diameter").value_or(0) <= most &&
-        number_of(tool, "flute_length").value_or(facts.depth) >= facts.depth;
-    if (fits && tool.reading.wrong.empty()) found.push_back(&tool);
+    finishes = finishes || ((!type || *type->text() == finisher) &&
+                            number_of(tool, "diameter").value_or(0) <= facts.most_finishing_mm());
   }
-  return found;
+  return finishes ? found : std::vector<const Tool*>();
+}
+
+std::vector<std::pair<std::string, std::string>> LibraryShelf::left_out(Route route, const FaceFacts& facts) const {
+  std::vector<std::pair<std::string, std::string>> all;
+  const std::vector<const Tool*> taken = candidates(route, facts);
+  for (const Tool& tool : tools_) {
+    if (std::find(taken.begin(), taken.end(), &tool) != taken.end()) continue;
+    const std::string why = why_not(tool, route, facts);
+    all.emplace_back(tool.title(),
+                     !why.empty() ? why
+                                  : fmt::format("it may rough, but no {} of this library reaches the root: that takes "
+                                                "{:.3f} mm or less",
+                                                words_of(route).back(), facts.most_finishing_mm()));
+  }
+  for (const tool_library::OtherTool& other : others_)
+    all.emplace_back(title_of(other.number, other.name), fmt::format("{}: a kind that no job has", other.kind));
+  return all;
 }
 
 std::vector<const LibraryShelf::Tool*> LibraryShelf::proposed(const std::vector<const Tool*>& candidates,

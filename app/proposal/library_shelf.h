@@ -4,6 +4,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/job/library_tool.h"
@@ -41,8 +42,12 @@ class LibraryShelf {
   Status say(int number, const toml::TomlTable& keys);
 
   /// Tools that a gear may be cut with, as far as they are known: of a kind that the route takes, no wider than what
-  /// reaches the root or what roughs first, with flutes that are long enough.
+  /// reaches the root or what roughs first, with flutes or a neck that reach it. None where none may finish.
   [[nodiscard]] std::vector<const Tool*> candidates(Route route, const FaceFacts& facts) const;
+  /// Why each of the others is none, by its title; of kinds that no job has, too.
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> left_out(Route route, const FaceFacts& facts) const;
+  /// Why a tool is no candidate, whatever the others are; empty: it is one.
+  [[nodiscard]] static std::string why_not(const Tool& tool, Route route, const FaceFacts& facts);
   /// Of these the two that a job would take if all the rest of them were right: the largest that finishes, and the
   /// largest that roughs.
   [[nodiscard]] static std::vector<const Tool*> proposed(const std::vector<const Tool*>& candidates,
@@ -60,6 +65,7 @@ class LibraryShelf {
  private:
   std::string file_, unit_;
   std::vector<Tool> tools_;
+  std::vector<tool_library::OtherTool> others_;
 };
 
 }  // namespace toothpath::proposal

@@ -296,7 +296,7 @@ Result<Draft> face_draft(Draft draft, const ChosenMachine& machine, const Chosen
   if (!mill)
     return fail_as(DiagnosticKind::refused_input,
                    "{}: the largest ball that reaches all of the fillets and the root has {:.3f} mm, and no {} "
-                   "is so small with flutes of {:.2f} mm; {} takes a larger ball",
+                   "is so small and reaches down {:.2f} mm; {} takes a larger ball",
                    gear.face            ? "--tip-radius"
                    : gear.module_mm > 0 ? "--tools"
                                         : "--module",
@@ -450,7 +450,7 @@ Told limits_of(const ChosenGear& gear) {
           {"largest ball that reaches the root",
            gear.facts.largest_ball > 0 ? mm(gear.facts.largest_ball) : "none: the fillet is sharp"},
           {"largest first roughing ball", mm(gear.facts.first_ball)},
-          {"least flute", mm(gear.facts.depth)},
+          {"least flute", mm(gear.facts.depth) + "; less, where what is above it is no thicker than its ball"},
           {"least stick-out that is proposed", mm(least_stick_out_mm(gear.facts.depth))}};
 }
 

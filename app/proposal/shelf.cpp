@@ -82,10 +82,16 @@ Shelf standard_shelf(double depth_mm) {
   return shelf;
 }
 
+bool reaches_root(const tool::ToolAssembly& tool, double depth_mm) {
+  if (tool.flute_length_mm >= depth_mm) return true;
+  return tool.type == CutterType::ball_end_mill && tool.shank_diameter_mm > 0 &&
+         tool.shank_diameter_mm <= tool.diameter_mm && tool.stick_out_mm > depth_mm;
+}
+
 const tool::ToolAssembly* largest(const Shelf& shelf, CutterType type, double most_mm, double depth_mm, int skip) {
   std::vector<const tool::ToolAssembly*> fitting;
   for (const tool::ToolAssembly& tool : shelf)
-    if (tool.type == type && tool.diameter_mm <= most_mm && tool.flute_length_mm >= depth_mm) fitting.push_back(&tool);
+    if (tool.type == type && tool.diameter_mm <= most_mm && reaches_root(tool, depth_mm)) fitting.push_back(&tool);
   std::stable_sort(fitting.begin(), fitting.end(),
                    [](const auto* a, const auto* b) { return a->diameter_mm > b->diameter_mm; });
   return static_cast<std::size_t>(skip) < fitting.size() ? fitting[static_cast<std::size_t>(skip)] : nullptr;

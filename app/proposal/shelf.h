@@ -22,7 +22,11 @@ using Shelf = std::vector<tool::ToolAssembly>;
 [[nodiscard]] double least_flute_mm(double depth_mm);
 [[nodiscard]] double least_stick_out_mm(double depth_mm);
 
-/// The largest tool of a kind that is no wider than this [mm] and whose flutes are long enough; nullptr: none.
+/// Does it come down to the root of tooth spaces of this depth [mm]: by its flutes, or as a ball mill that is above
+/// them no thicker than its ball, and cuts with that?
+[[nodiscard]] bool reaches_root(const tool::ToolAssembly& tool, double depth_mm);
+
+/// The largest tool of a kind that is no wider than this [mm] and reaches the root; nullptr: none.
 /// @param skip  so many larger ones that would fit are passed over
 [[nodiscard]] const tool::ToolAssembly* largest(const Shelf& shelf, tool::CutterType type, double most_mm,
                                                 double depth_mm, int skip = 0);

@@ -52,8 +52,17 @@ std::string lacking(const LibraryShelf& library, const Choice& choice) {
   return fmt::format("{}", fmt::join(all, "; "));
 }
 
-/// Asks for every key that a tool lacks.
-DoneOrErrors complete(LibraryShelf& library, int number, proposal::Route route, Dialog& dialog) {
+/// "; tool 5 (..): ..", why the tools that are no candidates are none.
+std::string reasons(const LibraryShelf& library, const Choice& choice) {
+  std::string all;
+  for (const auto& [title, why] : library.left_out(*choice.wishes.route, choice.gear.facts))
+    all += fmt::format("; {}: {}", title, why);
+  return all;
+}
+
+/// Asks for every key that a tool lacks. An answer with which it would not do is none.
+DoneOrErrors complete(LibraryShelf& library, int number, proposal::Route route, const proposal::FaceFacts& facts,
+                      Dialog& dialog) {
   while (!library.find(number)->whole()) {
     const LibraryShelf::Tool& tool = *library.find(number);
     const job::MissingKey key = LibraryShelf::missing(tool, route).front();
@@ -63,6 +72,10 @@ DoneOrErrors complete(LibraryShelf& library, int number, proposal::Route route, 
         return fmt::format("{} = \"{}\" is not {}", key.key, answer, job::shape_text(key.shape));
       const auto value = job::parse_tool_value(key.shape, answer);
       if (!value) return value.error().message;
+      LibraryShelf tried = library;
+      if (const Status taken = tried.say(number, {{{key.key, {}, *value}}}); !taken) return taken.error().message;
+      if (const std::string why = LibraryShelf::why_not(*tried.find(number), route, facts); !why.empty())
+        return fmt::format("{} then does not do: {}", tool.title(), why);
       const Status taken = library.say(number, {{{key.key, {}, *value}}});
       return taken ? std::nullopt : std::optional(taken.error().message);
     };
@@ -92,9 +105,13 @@ Expected<proposal::Shelf, std::vector<Diagnostic>> ask_for_tools(LibraryShelf& l
   const proposal::Route route = *choice.wishes.route;
   const auto candidates = library.candidates(route, choice.gear.facts);
   proposal::Told told;
-  for (const auto* tool : candidates)
-    told.emplace_back(tool->title(),
-                      tool->whole() ? "whole" : "lacks " + missing_text(LibraryShelf::missing(*tool, route)));
+  for (const auto* tool : candidates) {
+    std::string line = tool->whole() ? "whole" : "lacks " + missing_text(LibraryShelf::missing(*tool, route));
+    for (const std::string& note : tool->known.notes) line += "; " + note;
+    told.emplace_back(tool->title(), line);
+  }
+  for (const auto& [title, why] : library.left_out(route, choice.gear.facts))
+    told.emplace_back(title, "not offered: " + why);
   dialog.tell(told);
   std::vector<int> proposed;
   for (const auto* tool : LibraryShelf::proposed(candidates, choice.gear.facts)) proposed.push_back(tool->number());
@@ -110,7 +127,8 @@ Expected<proposal::Shelf, std::vector<Diagnostic>> ask_for_tools(LibraryShelf& l
   if (auto* errors = answer.refused()) return *errors;
   proposal::Shelf shelf;
   for (const int number : numbers_in(answer.value())) {
-    if (auto done = complete(library, number, route, dialog); auto* errors = done.refused()) return std::move(*errors);
+    if (auto done = complete(library, number, route, choice.gear.facts, dialog); auto* errors = done.refused())
+      return std::move(*errors);
     shelf.push_back(library.find(number)->reading.tool);
   }
   return shelf;
@@ -144,16 +162,22 @@ DoneOrErrors choose_tools(const Given& request, app::Dialog& dialog, Choice& cho
     choice.shelf = std::move(asked.value());
   }
   const auto draft = proposal::draft_of(request.name, choice.wishes, choice.machine, choice.gear, choice.shelf, 0);
+  if (!any && !draft) {
+    Diagnostic error = draft.error();
+    error.message += fmt::format("; of {}{}", request.tools, printable(reasons(library, choice)));
+    return std::vector{std::move(error)};
+  }
   if (const std::string lacks = lacking(library, choice); !lacks.empty() && (choice.shelf.empty() || !draft))
     return usage(
         fmt::format("--tools: {} does not say all of its tools that would do: {}; say it with --tool, as "
                     "--tool \"NUMBER: KEY = VALUE, KEY = VALUE\"",
                     request.tools, printable(lacks)));
   if (choice.shelf.empty())
-    return usage(fmt::format("--tools: {} has no ball mill{} that fits the tooth spaces: {}", request.tools,
-                             choice.wishes.route == proposal::Route::line ? " and no tapered ball mill" : "",
-                             fmt::format("at most {:.3f} mm, flutes of at least {:.2f} mm",
-                                         choice.gear.facts.most_finishing_mm(), choice.gear.facts.depth)));
+    return usage(fmt::format(
+        "--tools: {} has no {} that reaches the root of the tooth spaces, at most {:.3f} mm wide "
+        "and {:.2f} mm deep{}",
+        request.tools, choice.wishes.route == proposal::Route::line ? "tapered ball mill" : "ball mill",
+        choice.gear.facts.most_finishing_mm(), choice.gear.facts.depth, printable(reasons(library, choice))));
   std::error_code error;
   const fs::path from = fs::path(request.file).parent_path(),
                  near = fs::proximate(request.tools, from.empty() ? "." : from, error);

@@ -14,11 +14,11 @@ namespace toothpath::tool_library {
 [[nodiscard]] Result<std::vector<LibraryTool>> read_linuxcnc_table(const std::string& text, const std::string& path,
                                                                    LibraryUnit unit);
 [[nodiscard]] Result<std::vector<LibraryTool>> read_fusion_library(const std::string& text, const std::string& path,
-                                                                   LibraryUnit unit);
+                                                                   LibraryUnit unit, std::vector<OtherTool>* others);
 [[nodiscard]] Result<std::vector<LibraryTool>> read_freecad_bit(const std::string& text, const std::string& path,
                                                                 LibraryUnit unit);
 [[nodiscard]] Result<std::vector<LibraryTool>> read_freecad_library(const std::string& text, const std::string& path,
-                                                                    LibraryUnit unit);
+                                                                    LibraryUnit unit, std::vector<OtherTool>* others);
 
 /// Millimetres of a unit that somebody says; nothing where nobody does.
 [[nodiscard]] std::optional<double> mm_of(LibraryUnit unit);

@@ -53,9 +53,14 @@ std::string text_of(const Json& json, const char* name) {
 }
 
 /// The kind of a bit: its "shape-type"; where that is missing or "Custom", the file of its shape by its name.
-std::optional<std::string> type_of(const Json& json) {
+std::string kind_words(const Json& json) {
   std::string name = small(text_of(json, "shape-type"));
   if (name.empty() || name == "custom") name = small(std::filesystem::path(text_of(json, "shape")).stem().string());
+  return name;
+}
+
+std::optional<std::string> type_of(const Json& json) {
+  const std::string name = kind_words(json);
   for (const Shape& shape : kShapes)
     if (name == shape.name) return shape.type;
   return std::nullopt;
@@ -138,7 +143,7 @@ Result<std::vector<LibraryTool>> read_freecad_bit(const std::string& text, const
 }
 
 Result<std::vector<LibraryTool>> read_freecad_library(const std::string& text, const std::string& path,
-                                                      LibraryUnit unit) {
+                                                      LibraryUnit unit, std::vector<OtherTool>* others) {
   const auto json = parse_object(text, path);
   if (!json) return json.error();
   const auto list = json->find("tools");
@@ -161,8 +166,10 @@ Result<std::vector<LibraryTool>> read_freecad_library(const std::string& text, c
     if (!parsed) return parsed.error();
     auto tool = read_bit(*parsed, file, unit);
     if (!tool) return tool.error();
+    const int listed = int(std::clamp<std::int64_t>(*count_of(*number), 0, 1'000'000));
+    if (!*tool && others) others->push_back({listed, text_of(*parsed, "name"), kind_words(*parsed)});
     if (!*tool) continue;
-    (*tool)->number = int(std::clamp<std::int64_t>(*count_of(*number), 0, 1'000'000));
+    (*tool)->number = listed;
     tools.push_back(std::move(**tool));
   }
   if (tools.empty()) return fail_at({path, 0, 0}, "the library has no end mill: {} entries", list->size());

@@ -35,6 +35,13 @@ std::string text(const Json& object, const char* name) {
   return found && found->is_string() ? found->get<std::string>() : std::string();
 }
 
+/// T word; 0: none.
+int number_of(const Json& tool) {
+  const Json* post = member(tool, "post-process");
+  const auto n = post ? number(*post, "number") : std::nullopt;
+  return n && *n >= 1 && *n <= 1e6 ? int(*n) : 0;
+}
+
 /// One tool of the library while it is read.
 class Entry {
  public:
@@ -46,8 +53,7 @@ class Entry {
     if (type != "ball end mill" && type != "flat end mill" && type != "bull nose end mill" && type != "tapered mill")
       return std::optional<LibraryTool>();
     tool_.name = text(json_, "description");
-    const Json* post = member(json_, "post-process");
-    if (const auto n = post ? number(*post, "number") : std::nullopt; n && *n >= 1 && *n <= 1e6) tool_.number = int(*n);
+    tool_.number = number_of(json_);
     const auto unit = unit_of(json_, "unit");
     if (!unit) return unit.error();
     scale_ = *unit;
@@ -131,7 +137,20 @@ class Entry {
         for (const Json& segment : *segments)
           for (const char* end : {"lower-diameter", "upper-diameter"})
             if (const auto d = number(segment, end)) shank = std::max(*shank, *d * scale_);
-    key("shank_diameter", *shank);
+    key("shank_diameter", neck_up_to_the_holder(*shank).value_or(*shank));
+  }
+
+  /// What stands between flutes and holder: a neck ("shoulder") that reaches the holder is the shank that a [[tool]]
+  /// has. Of one that ends below it there is no key: the tool is taken as thick as its shank.
+  [[nodiscard]] std::optional<double> neck_up_to_the_holder(double shank) {
+    const auto neck = length("shoulder-diameter"), to = length("shoulder-length"), below = length("LB");
+    if (!neck || !to || *neck >= shank || tool_.keys.find("half_angle")) return std::nullopt;
+    if (below && *to >= (1 - kSameShare) * *below) return neck;
+    tool_.notes.push_back(fmt::format(
+        "its neck of {:g} mm ends {:g} mm above the tip, below the holder: a [[tool]] has one thickness from "
+        "flutes to holder, and that of the shank is taken, {:g} mm",
+        *neck, *to, shank));
+    return std::nullopt;
   }
 
   /// Gauge line to tip: as stated, else what the holder says of its own and the tool below it.
@@ -172,7 +191,7 @@ class Entry {
 }  // namespace
 
 Result<std::vector<LibraryTool>> read_fusion_library(const std::string& content, const std::string& path,
-                                                     LibraryUnit unit) {
+                                                     LibraryUnit unit, std::vector<OtherTool>* others) {
   const auto json = parse_object(content, path);
   if (!json) return json.error();
   const Json* data = member(*json, "data");
@@ -182,6 +201,7 @@ Result<std::vector<LibraryTool>> read_fusion_library(const std::string& content,
     auto tool = Entry(one, {path, 0, 0}, unit).read();
     if (!tool) return tool.error();
     if (*tool) tools.push_back(std::move(**tool));
+    else if (others) others->push_back({number_of(one), text(one, "description"), text(one, "type")});
   }
   if (tools.empty()) return fail_at({path, 0, 0}, "the library has no end mill: {} entries", data->size());
   return tools;

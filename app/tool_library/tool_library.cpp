@@ -55,25 +55,26 @@ std::string ending_of(const std::string& path) {
 }  // namespace
 
 Result<std::vector<LibraryTool>> read_tool_library_text(const std::string& text, const std::string& path,
-                                                        LibraryUnit unit) {
+                                                        LibraryUnit unit, std::vector<OtherTool>* others) {
   const std::string ending = ending_of(path);
   if (ending == ".tbl") return read_linuxcnc_table(text, path, unit);
-  if (ending == ".json") return read_fusion_library(text, path, unit);
+  if (ending == ".json") return read_fusion_library(text, path, unit, others);
   if (ending == ".fctb") return read_freecad_bit(text, path, unit);
-  if (ending == ".fctl") return read_freecad_library(text, path, unit);
+  if (ending == ".fctl") return read_freecad_library(text, path, unit, others);
   if (ending == ".tools") {
     const auto json = unzipped(text, ".json", path);
     if (!json) return json.error();
-    return read_fusion_library(*json, path, unit);
+    return read_fusion_library(*json, path, unit, others);
   }
   return fail_at({path, 0, 0}, "tools are read from {}; this ends with \"{}\"", kFormats, ending);
 }
 
-Result<std::vector<LibraryTool>> read_tool_library(const std::string& path, LibraryUnit unit) {
+Result<std::vector<LibraryTool>> read_tool_library(const std::string& path, LibraryUnit unit,
+                                                   std::vector<OtherTool>* others) {
   const auto text = ending_of(path) == ".tools" ? toml::read_input_file(path, kMostToolBytes)
                                                 : toml::read_input_text(path, kMostToolBytes);
   if (!text) return text.error();
-  return read_tool_library_text(*text, path, unit);
+  return read_tool_library_text(*text, path, unit, others);
 }
 
 Result<LibraryTool> tool_of_library(const std::vector<LibraryTool>& tools, int number) {

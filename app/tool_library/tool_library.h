@@ -24,6 +24,13 @@ struct LibraryTool {
   bool unit_is_open = false;       ///< nobody says the unit of its lengths: read as mm
 };
 
+/// A tool of a kind that no job has: a drill, a probe.
+struct OtherTool {
+  int number = 0;    ///< T word; 0: the file gives none
+  std::string name;  ///< for people
+  std::string kind;  ///< in the words of the file
+};
+
 /// The unit that somebody says for lengths of which the file states none.
 enum class LibraryUnit : std::uint8_t { none, mm, inch };
 /// Of its words "mm" and "inch".
@@ -38,11 +45,14 @@ inline constexpr const char* kFormats = ".tbl (LinuxCNC), .json or .tools (Fusio
 /// or is not of its format, with the line where it is known; a unit that is not said. A tool table has none: the
 /// configurations beside it (.ini, LINEAR_UNITS) are asked, and what they or its numbers say of inches is refused until
 /// somebody says the unit. Tools of kinds that no job has (drills, probes) are left out, unless they are all.
+/// @param others  takes those that are left out; nullptr: nobody asks for them
 [[nodiscard]] Result<std::vector<LibraryTool>> read_tool_library(const std::string& path,
-                                                                 LibraryUnit unit = LibraryUnit::none);
+                                                                 LibraryUnit unit = LibraryUnit::none,
+                                                                 std::vector<OtherTool>* others = nullptr);
 /// The same of text; tool bits that a .fctl names are read beside `path` and in ../Bit. Of a .tools, bytes.
 [[nodiscard]] Result<std::vector<LibraryTool>> read_tool_library_text(const std::string& text, const std::string& path,
-                                                                      LibraryUnit unit = LibraryUnit::none);
+                                                                      LibraryUnit unit = LibraryUnit::none,
+                                                                      std::vector<OtherTool>* others = nullptr);
 
 /// The one with a number; of a file with a single tool without a number that one. Errors: none has it (the numbers that
 /// are there), two have it.

@@ -618,6 +618,70 @@ TEST(New, RefusesAWrongWordOfATool) {
   EXPECT_NE(none.err.find("--tools names none"), std::string::npos) << none.err;
 }
 
+/// One ball mill of a Fusion library, in millimetres, in a collet of 30 mm.
+std::string fusion_ball(int number, const std::string& geometry) {
+  return fmt::format(
+      R"({{"type": "ball end mill", "unit": "millimeters", "post-process": {{"number": {}}}, "geometry": {{{}}}, "holder":
+      {{"unit": "millimeters", "gaugeLength": 70, "segments": [{{"height": 30, "lower-diameter": 11, "upper-diameter": 11}}]}}}})",
+      number, geometry);
+}
+
+/// Tools that cannot do are not offered, and why stands there; one that is not chosen is not asked about.
+TEST(New, OffersOnlyToolsThatReachAndSaysWhyTheOthersDoNot) {
+  const TestDir dir;
+  write_file(dir / "lib.json", R"({"data": [)" + fusion_ball(1, R"("DC": 1, "LCF": 7, "LB": 27, "SFDM": 4, "NOF": 2)") +
+                                   "," + fusion_ball(2, R"("DC": 1.2, "LB": 27, "SFDM": 4)") + "," +
+                                   fusion_ball(3, R"("DC": 16, "LCF": 30, "LB": 60, "SFDM": 16)") + "," +
+                                   fusion_ball(4, R"("DC": 1, "LCF": 1.5, "LB": 27, "SFDM": 4)") + R"(,
+    {"type": "bull nose end mill", "unit": "millimeters", "post-process": {"number": 5}, "geometry": {"DC": 4}},
+    {"type": "drill", "description": "pilot", "post-process": {"number": 7}}]})");
+  Words words = with_tools(dir / "lib.json", {"-o", dir / "job.toml"});
+  words.insert(words.begin(), {TOOTHPATH_BINARY, "new"});
+  int exit_code = -1;
+  const std::string shown = on_terminal(words, "\n\n\n\n\n\n4\n1\n", exit_code);
+  EXPECT_EQ(exit_code, 0) << shown;
+  for (const char* line :
+       {"tool 1: whole", "tool 2: lacks flute_length", "tool 3: not offered: 16 mm wide: at most ",
+        "tool 4: not offered: flutes of 1.5 mm end above the root, 4.50 mm below the tips, and its shank of 4 mm is "
+        "thicker than its ball",
+        "tool 5: not offered: bull_nose_end_mill: this way to cut takes ball_end_mill",
+        "tool 7 (pilot): not offered: drill: a kind that no job has"})
+    EXPECT_NE(shown.find(line), std::string::npos) << line << "\n" << shown;
+  EXPECT_NE(shown.find("one of the numbers above"), std::string::npos) << "4 is not offered\n" << shown;
+  EXPECT_EQ(shown.find("tool 2: flute_length"), std::string::npos) << "it was not chosen\n" << shown;
+}
+
+/// Where no tool reaches the root, none is asked about.
+TEST(New, AsksNothingAboutToolsOfWhichNoneReachesTheRoot) {
+  const TestDir dir;
+  write_file(dir / "shop.tbl", "T1 P1 D1.9 Z80\nT2 P2 D1.7 Z80\n");
+  Words words = with_tools(dir / "shop.tbl", {"-o", dir / "job.toml"});
+  words.insert(words.begin(), {TOOTHPATH_BINARY, "new"});
+  int exit_code = -1;
+  const std::string shown = on_terminal(words, "\n\n\n0.2\n\n\n\x04", exit_code);
+  EXPECT_EQ(exit_code, 2) << "the answers end\n" << shown;
+  EXPECT_EQ(shown.find("that may be used"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("has no ball mill that reaches the root of the tooth spaces, at most 0.388 mm wide"),
+            std::string::npos)
+      << shown;
+  EXPECT_NE(shown.find("tool 2: it may rough, but no ball_end_mill of this library reaches the root: that takes 0."),
+            std::string::npos)
+      << shown;
+}
+
+/// Short flutes are enough where a neck no thicker than the ball goes on to the holder.
+TEST(New, AMillWithANeckNeedsNoFlutesAsDeepAsTheTeeth) {
+  const TestDir dir;
+  write_file(dir / "lib.json",
+             R"({"data": [)" +
+                 fusion_ball(4, R"("DC": 1, "LCF": 2, "LB": 16, "SFDM": 4, "NOF": 2, "shoulder-diameter": 0.95,
+                                  "shoulder-length": 16)") +
+                 "]}");
+  const Finished made = run_new(with_tools(dir / "lib.json"), dir / "job.toml");
+  EXPECT_EQ(made.exit_code, 0) << made.err << made.out;
+  EXPECT_NE(file_text(dir / "job.toml").find("[[tool]]\nnumber = 4\nlibrary = \"lib.json\" "), std::string::npos);
+}
+
 TEST(New, AsksOnATerminalForWhatALibraryDoesNotSay) {
   const TestDir dir;
   write_file(dir / "shop.tbl", "T1 P1 D16 Z80\nT12 P3 D1 Z80 ; ball nose\n");

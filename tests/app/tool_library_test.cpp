@@ -163,6 +163,37 @@ TEST(ToolLibrary, FusionLibrary) {
   EXPECT_NE(rounded.notes.front().find("no ball end"), std::string::npos);
 }
 
+/// Kinds that no job has are told to those who ask.
+TEST(ToolLibrary, WhatIsLeftOutIsTold) {
+  std::vector<tool_library::OtherTool> others;
+  ASSERT_TRUE(read_tool_library_text(kFusion, "lib.json", LibraryUnit::none, &others));
+  ASSERT_EQ(others.size(), 2u);
+  EXPECT_EQ(others[0].kind, "holder");
+  EXPECT_EQ(others[0].name, "only a holder");
+  EXPECT_EQ(others[1].kind, "drill");
+  EXPECT_EQ(others[1].number, 8);
+}
+
+/// A neck that reaches the holder is the shank of a [[tool]]; one that ends below it is told, and the shank holds.
+TEST(ToolLibrary, TheNeckOfAFusionToolUpToItsHolderIsItsShank) {
+  const auto read = [](const std::string& neck) {
+    const auto tools = read_tool_library_text(R"({"data": [{"type": "ball end mill", "unit": "millimeters", "geometry":
+      {"DC": 1, "LCF": 1.5, "LB": 16, "SFDM": 4)" +
+                                                  neck + "}}]}",
+                                              "lib.json");
+    EXPECT_TRUE(tools) << tools.error().text();
+    return tools->front();
+  };
+  EXPECT_EQ(number(read(""), "shank_diameter"), 4);
+  EXPECT_EQ(number(read(R"(, "shoulder-diameter": 0.95, "shoulder-length": 16)"), "shank_diameter"), 0.95);
+  const LibraryTool below = read(R"(, "shoulder-diameter": 0.95, "shoulder-length": 8)");
+  EXPECT_EQ(number(below, "shank_diameter"), 4);
+  ASSERT_FALSE(below.notes.empty());
+  EXPECT_TRUE(below.notes.front().starts_with("its neck of 0.95 mm ends 8 mm above the tip, below the holder"))
+      << below.notes.front();
+  EXPECT_EQ(number(read(R"(, "shoulder-diameter": 5, "shoulder-length": 16)"), "shank_diameter"), 4) << "no neck";
+}
+
 TEST(ToolLibrary, TheAngleOfATaperedMillIsTakenOnlyWhereTheFormAgrees) {
   // The ball whose side has the half angle a meets the end plane at 2 r tan(45 - a / 2).
   for (const double angle : {3.0, 7.0, 15.0})
