@@ -33,6 +33,7 @@ const char* help_against(proof::ErrorSource source) {
     case ErrorSource::deflection:
     case ErrorSource::point_spacing:
     case ErrorSource::given_normals:
+    case ErrorSource::meridian_corners:
     case ErrorSource::continuation: return nullptr;
   }
   return nullptr;

@@ -60,7 +60,8 @@ Facet on_ring(const tooth_space::ToothSpace& space, const Facet& facet, double s
   const double slope = high - low > 1e-9 ? (space.tip(high) - space.tip(low)) / (high - low) : 0;
   const auto over = [&](double s) { return space.tip(s) - slope * s; };
   const double middle = over(0.5 * (low + high));
-  const double tip = std::max(over(low), over(high)) + 1.2 * std::abs(middle - over(low));
+  const double bent = 0.125 * (high - low) * (high - low) * space.tip_bend(low, high).bend.magnitude();
+  const double tip = std::max(over(low), over(high)) + std::max(1.2 * std::abs(middle - over(low)), bent);
   const double steep = std::sqrt(1 + slope * slope);
   const Vec3 along = chart.cosine * outwards - chart.sine * Vec3::UnitZ(),
              up = chart.sine * outwards + chart.cosine * Vec3::UnitZ();

@@ -198,11 +198,13 @@ class Maker {
           R.opening_slope, 1.000001 * std::abs(R.opening[k + 1] - R.opening[k]) / (R.table_s[k + 1] - R.table_s[k]));
     R.tip_from = space_.tip(R.s_from);
     R.tip_to = space_.tip(R.s_to);
-    R.tip_slope = space_.tip_bend(R.s_from, R.s_to).slope.magnitude();
+    const CurveBend tip = space_.tip_bend(R.s_from, R.s_to);
+    R.tip_slope = tip.slope.magnitude();
     for (int k = 1; k < 64; ++k) {
       const double t = k / 64.0, h = space_.tip(R.s_from + t * (R.s_to - R.s_from));
       R.tip_sag = std::max(R.tip_sag, 1.01 * std::abs(h - R.tip_from - t * (R.tip_to - R.tip_from)) - 1e-12);
     }
+    R.tip_sag += 0.125 * tip.bend.magnitude() * std::pow((R.s_to - R.s_from) / 64, 2);  // between these places
   }
   /// A tip edge at s, behind `last`; its azimuth within half a turn of the root's.
   [[nodiscard]] std::optional<tooth_space::EdgePlace> edge_at(int side, double s,

@@ -126,7 +126,7 @@ class RoughingPlanner {
   [[nodiscard]] double deepest_root() const {
     const tooth_space::ToothSpace& space = sheet_.space();
     const auto& ring = space.outline();
-    const double highest = std::max(space.tip(ring.s_from), space.tip(ring.s_to));
+    const double highest = space.highest_tip();
     double root = walls_[walls_.size() / 2].root;
     for (std::size_t k = 0; k < walls_.size(); ++k)
       if (const double s = sheet_.stations()[k].r; s >= ring.s_from && s <= ring.s_to)

@@ -116,6 +116,7 @@ enum class ErrorSource : std::uint8_t {
   deflection,
   point_spacing,
   given_normals,
+  meridian_corners,
   continuation
 };
 [[nodiscard]] constexpr const char* to_string(ErrorSource source) {
@@ -138,6 +139,7 @@ enum class ErrorSource : std::uint8_t {
     case ErrorSource::deflection: return "deflection";
     case ErrorSource::point_spacing: return "spacing of the points";
     case ErrorSource::given_normals: return "given normals";
+    case ErrorSource::meridian_corners: return "corners of root and tip";
     case ErrorSource::continuation: return "continuation";
   }
   return "";

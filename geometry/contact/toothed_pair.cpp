@@ -46,28 +46,28 @@ Vec2 SpaceFlank::meridian(const Vec3& p) const {
   return {ring.sign * ring.chart.along(p), ring.chart.up(p)};
 }
 
-double SpaceFlank::low(double s) const {
-  const double x = std::clamp(column_share(s), 0.0, 1.0) * (columns - 1);
+double SpaceFlank::low(double station) const {
+  const double x = std::clamp(column_share(station), 0.0, 1.0) * (columns - 1);
   const auto c = static_cast<std::size_t>(std::min(int(x), columns - 2));
   return low_mm[c] + (x - double(c)) * (low_mm[c + 1] - low_mm[c]);
 }
 
-double SpaceFlank::column_share(double s) const {
+double SpaceFlank::column_share(double station) const {
   const tooth_space::Outline& ring = space->outline();
-  const double share = (s - ring.s_from) / (ring.s_to - ring.s_from);
+  const double share = (station - ring.s_from) / (ring.s_to - ring.s_from);
   return begins_at_from(*space) ? share : 1 - share;
 }
 
 Vec2 SpaceFlank::shares(double s, double h) const {
-  const double end = low(s);
-  return {column_share(s), (h - end) / (space->tip(s) - end)};
+  const double station = space->outline().station(s, h), end = low(station);
+  return {column_share(station), (h - end) / (space->tip(s) - end)};
 }
 
 double SpaceFlank::inside_by(double s, double h) const {
   const tooth_space::Outline& ring = space->outline();
-  const double ends = std::min(s - ring.s_from, ring.s_to - s);
+  const double station = ring.station(s, h), ends = std::min(station - ring.s_from, ring.s_to - station);
   if (!(ends >= 0)) return std::isnan(ends) ? -1 : ends;
-  return std::min({ends, space->tip(s) - h, h - low(s)});
+  return std::min({ends, space->tip(s) - h, h - low(station)});
 }
 
 std::optional<tooth_space::PiecePlace> SpaceFlank::place(double s, double h) const {
@@ -95,18 +95,18 @@ Result<SpaceFlank> space_flank(const ToothSpace& space, int zone, int side, int 
   const double end = end_of_flank(space, flank.piece);
   for (int c = 0; c < columns; ++c) {
     const double share = double(begins_at_from(space) ? c : columns - 1 - c) / (columns - 1),
-                 s = ring.s_from + (ring.s_to - ring.s_from) * share;
-    const auto tip = space.tip_edge(side, s);
-    const auto low_v = tooth_space::v_at(space, flank.piece, end, s);
+                 station = ring.s_from + (ring.s_to - ring.s_from) * share, s_tip = space.tip_s(station);
+    const auto tip = space.tip_edge(side, s_tip);
+    const auto low_v = tooth_space::v_at_station(space, flank.piece, end, station);
     const auto low = low_v ? space.at(flank.piece, end, *low_v) : std::nullopt;
     if (!tip || !low)
       return fail("flank {:+} does not reach from its tip to its fillet at {} {:.4f} mm", side, ring.along,
-                  ring.sign * s);
-    const double h_low = ring.chart.up(low->p), h_tip = space.tip(s);
+                  ring.sign * station);
+    const double h_low = ring.chart.up(low->p), h_tip = space.tip(s_tip);
     flank.low_mm.push_back(h_low);
     Vec2 start(end, *low_v);
     for (int r = 0; r < rows; ++r) {
-      const double up = double(r) / (rows - 1), h = h_low + (h_tip - h_low) * up;
+      const double up = double(r) / (rows - 1), h = h_low + (h_tip - h_low) * up, s = ring.s_at(station, h);
       const auto found = tooth_space::search_place(space, flank.piece, s, h, start);
       if (!found)
         return fail("flank {:+} has no place at {} {:.4f} mm, {:.0f} % of its height", side, ring.along, ring.sign * s,

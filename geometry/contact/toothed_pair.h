@@ -47,8 +47,8 @@ struct SpaceFlank {
   [[nodiscard]] std::optional<tooth_space::PiecePlace> place(double s, double h) const;
 
  private:
-  [[nodiscard]] double low(double s) const;  ///< h where it ends
-  [[nodiscard]] double column_share(double s) const;
+  [[nodiscard]] double low(double station) const;  ///< h where it ends
+  [[nodiscard]] double column_share(double station) const;
 };
 /// Refused: a flank that does not reach from its fillet to its tip surface.
 [[nodiscard]] Result<SpaceFlank> space_flank(const tooth_space::ToothSpace& space, int zone, int side, int rows,

@@ -23,7 +23,11 @@ constexpr double kMostRatio = 3;      // of neighbouring chords
 constexpr double kOnePlace = 1e-6;    // mm: two points, or the ends of root and tip
 constexpr double kUnitLength = 1e-3;  // what the length of a normal may lack of 1
 constexpr double kEndsOff = 0.005;    // mm: both ends of the teeth are square to one direction within it
+constexpr double kMostLean = 30;      // deg, of an end to the direction in which the teeth stand
 constexpr double kStraight = 1e-5;    // mm: points of a meridian that lie so close to its chord add nothing
+constexpr double kMostTurn = 30;      // deg, of a meridian: in a corner, and to its chord
+constexpr double kCornerOff = 1e-3;   // mm: how far a corner's rounding leaves it, where no ball asks for more
+constexpr double kRollRoom = 2;       // times the ball's radius: the least radius of a hollow corner of the root
 constexpr double kFarthest = 1e5;     // mm
 constexpr double kLeastFace = 0.01;   // mm
 constexpr double kLeastArc = 1;       // deg, of a fillet
@@ -159,12 +163,12 @@ class Fitting : public Refusals {
                     first.norm() > kOnePlace ? "ends" : "begins", least, kOnePlace);
     const Vec2 sum = first.normalized() + last.normalized(), upwards = sum.normalized();
     const auto off = [&](const Vec2& end) { return std::abs(end.x() * upwards.y() - end.y() * upwards.x()); };
-    const double aside = 2 * std::max(off(first), off(last));
-    if (!(sum.norm() > 1) || aside > kEndsOff)
+    const double lean = 0.5 * std::acos(std::clamp(first.normalized().dot(last.normalized()), -1.0, 1.0));
+    if (!(lean <= radians(kMostLean)))
       return refuse("tip",
-                    "the ends of the teeth, from the root to the tip, lean to one another: by {:.4f} mm over their "
-                    "height, limit {} mm. Ends that are no parallels in the meridian are not there yet",
-                    aside, kEndsOff);
+                    "the ends of the teeth, from the root to the tip, lean to one another by {:.4f} deg, limit {} deg: "
+                    "no direction is upright for both",
+                    degrees(2 * lean), 2 * kMostLean);
     if (upwards.x() < -1e-9)
       return refuse("tip",
                     "the tip lies {:.4f} mm nearer to the axis than the root, limit 0: internal gears are not there",
@@ -180,28 +184,50 @@ class Fitting : public Refusals {
     if (ring.chart.cosine == 0) ring.chart.sine = 1;
     const Chart& chart = ring.chart;
     ring.pitch = kTwoPi / gear_.teeth;
-    const double begins = 0.5 * (along(chart, gear_.root.front()) + along(chart, gear_.tip.front())),
-                 ends = 0.5 * (along(chart, gear_.root.back()) + along(chart, gear_.tip.back()));
-    ring.s_from = std::min(begins, ends);
-    ring.s_to = std::max(begins, ends);
+    kernel.radius_mm = gear_.fillet_radius_mm;
+    const auto in_chart = [&](const Vec2& rz) { return Vec2(along(chart, rz), up(chart, rz)); };
+    const Vec2 low[] = {in_chart(gear_.root.front()), in_chart(gear_.root.back())},
+               high[] = {in_chart(gear_.tip.front()), in_chart(gear_.tip.back())};
+    rises_ = low[1].x() + high[1].x() > low[0].x() + high[0].x();
+    std::array<tooth_space::EndLine, 2> ends;
+    for (const std::size_t k : {0U, 1U}) {
+      const std::size_t n = rises_ ? k : 1 - k;
+      const Vec2 middle = 0.5 * (low[n] + high[n]), way = high[n] - low[n];
+      ends[k] = {middle.x(), middle.y(), way.x() / way.y()};
+    }
+    ring.s_from = ends[0].s;
+    ring.s_to = ends[1].s;
+    if (2 * std::max(off(first), off(last)) > kEndsOff) {
+      // The engine's ends lie farther out than either end at any height, down to where the body's front begins.
+      ring.leaning = ends;
+      const double module = 2 * std::max(gear_.tip.front().x(), gear_.tip.back().x()) / gear_.teeth,
+                   deepest = std::min(low[0].y(), low[1].y()) - module, highest = std::max(high[0].y(), high[1].y());
+      for (const double h : {deepest, highest}) {
+        if (!(ends[1].at(h) - ends[0].at(h) > kLeastFace))
+          return refuse("tip",
+                        "the ends of the teeth lean to one another so much that they meet before {}: longer teeth, or "
+                        "ends that lean less",
+                        h == deepest ? "a module below the root" : "the tip");
+        ring.s_from = std::min(ring.s_from, ends[0].at(h));
+        ring.s_to = std::max(ring.s_to, ends[1].at(h));
+      }
+    }
     if (!(ring.s_to - ring.s_from > kLeastFace))
       return refuse("root", "the teeth are {:.6g} mm long, {} mm at least are needed", ring.s_to - ring.s_from,
                     kLeastFace);
-    rises_ = ends > begins;
     ring.from = rises_ ? "first" : "last";
     ring.to = rises_ ? "last" : "first";
     name_stations(ring);
-    straight("root", gear_.root);
-    straight("tip", gear_.tip);
     const Vec2 way = (gear_.root.back() - gear_.root.front()).normalized();
     kernel.root.start = gear_.root.front();
     kernel.root.along = way;
     kernel.root.normal = Vec2(-way.y(), way.x());
     if (kernel.root.normal.dot(upwards) < 0) kernel.root.normal = -kernel.root.normal;
-    const Vec2 &a = gear_.tip.front(), &b = gear_.tip.back();
-    kernel.tip_from = {along(chart, a), up(chart, a)};
-    kernel.tip_slope = (up(chart, b) - up(chart, a)) / (along(chart, b) - along(chart, a));
-    kernel.radius_mm = gear_.fillet_radius_mm;
+    const auto on_root = [&](const Vec2& rz) { return kernel.root.local(rz); };
+    if (auto line = rounded("root", gear_.root, on_root, kRollRoom * kernel.radius_mm)) kernel.root.bent = *line;
+    std::vector<Vec2> tip = gear_.tip;
+    if (!rises_) std::reverse(tip.begin(), tip.end());
+    if (auto line = rounded("tip", tip, in_chart, 0)) kernel.tip_line = *line;
   }
 
   void flank(int side) {
@@ -333,11 +359,11 @@ class Fitting : public Refusals {
     for (const int side : {1, -1}) {
       const Piece piece = tooth_space::flank_of(side);
       for (int k = 0; k < kStations; ++k) {
-        const double s = ring.s_from + (ring.s_to - ring.s_from) * k / (kStations - 1);
-        const auto edge = space.tip_edge(side, s);
+        const double station = ring.s_from + (ring.s_to - ring.s_from) * k / (kStations - 1);
+        const auto edge = space.tip_edge(side, space.tip_s(station));
         constexpr int kHeights = 5;
-        for (int i = 0; i < kHeights && edge; ++i) see(space, side, piece, edge->u * i / (kHeights - 1), s);
-        see(space, side, tooth_space::fillet_of(side), 0, s);
+        for (int i = 0; i < kHeights && edge; ++i) see(space, side, piece, edge->u * i / (kHeights - 1), station);
+        see(space, side, tooth_space::fillet_of(side), 0, station);
       }
     }
     if (quality.going_on > kMostBeyond * (1 + 1e-9))
@@ -381,7 +407,7 @@ class Fitting : public Refusals {
     const double height = kernel.tip<double>(s) - up(kernel.ring.chart, gear_.root.front());
     const auto less = that_does(0, height, [&](double lower) {
       GridKernel other = kernel;
-      other.tip_from.y() -= lower;
+      other.tip_line.raise(-lower);
       const GridSpace space(std::move(other));
       return space.tip_edge(1, s) && space.tip_edge(-1, s) && tooth_space::top_land_mm(space, s) > 0;
     });
@@ -430,7 +456,7 @@ class Fitting : public Refusals {
       Vec3 p, n;
       f.at<double>(f.spline.u().back(), v, p, &n);
       const Vec3 c = p + radius * n;
-      if (kernel.root.height(toothpath::radius(c), c.z()) < radius)
+      if (kernel.root.height({toothpath::radius(c), c.z()}) < radius)
         return fmt::format("on flank {} at {} it touches the root before it touches the flank", side,
                            tooth_space::station(kernel.ring, v));
       return fmt::format("on flank {} at {} it does not reach the root down to half a height below the points", side,
@@ -444,9 +470,9 @@ class Fitting : public Refusals {
                normal = value(n), c = value(p) + radius * normal;
     if (!(parallel.dot(normal) * f.sign > 0))
       return fmt::format("it does not fit the hollow of flank {} at {}", side, place_words(value(p)));
-    const double out = kernel.root.normal[0] / toothpath::radius(c),
-                 arc = std::acos(
-                     std::clamp(normal.dot(Vec3(c.x() * out, c.y() * out, kernel.root.normal[1])), -1.0, 1.0));
+    const auto square = kernel.root.outwards(kernel.root.foot({toothpath::radius(c), c.z()}));
+    const double out = square[0] / toothpath::radius(c),
+                 arc = std::acos(std::clamp(normal.dot(Vec3(c.x() * out, c.y() * out, square[1])), -1.0, 1.0));
     if (!(arc > radians(kLeastArc) && arc < radians(180 - kLeastArc)))
       return fmt::format("flank {} meets the root at {:.3f} deg at {}, a fillet needs {} to {} deg", side, degrees(arc),
                          place_words(value(p)), kLeastArc, 180 - kLeastArc);
@@ -464,21 +490,66 @@ class Fitting : public Refusals {
     }
   }
 
-  /// No polyline yet.
-  void straight(const char* name, const std::vector<Vec2>& points) {
-    const Vec2 &a = points.front(), way = (points.back() - a).normalized();
-    double before = 0;
+  /// The line through the points of a meridian, given in another frame in which it rises. Hollow corners get at least
+  /// a radius. Refused: what turns back or bends too sharply.
+  template <typename Frame>
+  std::optional<RoundedLine> rounded(const char* name, const std::vector<Vec2>& points, const Frame& frame,
+                                     double hollow_mm) {
+    const auto number = [&](std::size_t k) {  // in the job
+      return points.data() == gear_.root.data() || rises_ ? k : points.size() - 1 - k;
+    };
+    const auto words = [&](std::size_t k) {
+      return fmt::format("point {}, r {:.4f} mm, z {:.4f} mm", number(k), points[k].x(), points[k].y());
+    };
+    const Vec2 chord = frame(points.back()) - frame(points.front());
+    std::vector<Vec2> line{frame(points.front())};
+    std::vector<std::size_t> from{0};  // points of the job, without those on a straight line with their neighbours
     for (std::size_t k = 1; k < points.size(); ++k) {
-      const Vec2 d = points[k] - a;
-      const double off = std::abs(d.x() * way.y() - d.y() * way.x()), at = d.dot(way);
-      if (off > kStraight)
-        return refuse(name,
-                      "{}: point {} lies {:.4f} mm beside the straight line from the first to the last, limit {} mm: "
-                      "meridians that bend are not there yet",
-                      name, k, off, kStraight);
-      if (!(at > before)) return refuse(name, "{}: point {} does not lie behind point {}", name, k, k - 1);
-      before = at;
+      const Vec2 p = frame(points[k]), step = p - frame(points[k - 1]);
+      if (!(step.dot(chord) > 0)) {
+        refuse(name, "{}: {} does not lie behind the point before it", name, words(k));
+        return {};
+      }
+      if (const double turn = std::abs(std::atan2(step.y() * chord.x() - step.x() * chord.y(), step.dot(chord)));
+          !(turn <= radians(kMostTurn))) {
+        refuse(name, "{}: the line to {} leans by {:.4f} deg to that from the first point to the last, limit {} deg",
+               name, words(k), degrees(turn), kMostTurn);
+        return {};
+      }
+      bool straight = from.back() + 1 < k;
+      for (std::size_t n = from.back() + 1; straight && n < k; ++n)
+        straight = beside(line.back(), frame(points[n]), p) <= kStraight;
+      if (!straight && from.back() + 1 < k) line.push_back(frame(points[k - 1])), from.push_back(k - 1);
     }
+    line.push_back(frame(points.back()));
+    from.push_back(points.size() - 1);
+    std::vector<double> half(line.size(), 0.0);
+    for (std::size_t k = 1; k + 1 < line.size(); ++k) {
+      const Vec2 a = line[k] - line[k - 1], b = line[k + 1] - line[k];
+      const double turn = b.y() / b.x() - a.y() / a.x(), room = 0.5 * std::min(a.x(), b.x());
+      const double wanted = turn > 0 ? hollow_mm * turn : 0;
+      if (wanted > room) {
+        refuse(name,
+               "{}: at {} it turns by {:.4f} deg within {:.4f} mm: too hollow for a ball of {:.4f} mm to roll through; "
+               "fillet_radius = {:.4f} mm or less would do",
+               name, words(from[k]), degrees(turn), 2 * room, kernel.radius_mm,
+               std::floor(1e3 * room / turn / kRollRoom) / 1e3);
+        return {};
+      }
+      half[k] = std::min(room, std::max(wanted, 6 * kCornerOff / std::abs(turn)));
+    }
+    RoundedLine out(line, half);
+    for (std::size_t k = 0; k < out.corners().size(); ++k)
+      if (const double off = out.corners()[k].off(); off > quality.corners_mm) {
+        quality.corners_mm = off;
+        quality.corners_at = fmt::format("{}, {}", name, words(from[k + 1]));
+      }
+    return out;
+  }
+  /// Of a point between two others, from the line through them.
+  static double beside(const Vec2& a, const Vec2& p, const Vec2& b) {
+    const Vec2 way = (b - a).normalized(), d = p - a;
+    return std::abs(d.x() * way.y() - d.y() * way.x());
   }
 
   /// Chords of one row or column.
@@ -564,9 +635,9 @@ class Fitting : public Refusals {
       }
   }
 
-  void see(const GridSpace& space, int side, Piece piece, double u, double s) {
-    const auto v = tooth_space::v_at(space, piece, u, s);
-    if (!v) return refuse_lost(side, s);
+  void see(const GridSpace& space, int side, Piece piece, double u, double station) {
+    const auto v = tooth_space::v_at_station(space, piece, u, station);
+    if (!v) return refuse_lost(side, station);
     const TensorSpline& spline = kernel.flank(side).spline;
     const double at = kernel.ball(side).contact(*v) + (tooth_space::is_flank(piece) ? u : 0);
     for (const auto& [low, high, x, length] :

@@ -24,6 +24,8 @@ struct GridQuality {
   std::string going_on_at;  ///< where, in words
   std::optional<double> normals_rad;  ///< worst angle of a given normal to the spline's; none: no normals are given
   std::string normals_at;             ///< where
+  double corners_mm = 0;              ///< the most by which a rounded corner of root or tip lies beside it
+  std::string corners_at;             ///< where
   std::optional<double> spacing_mm;   ///< every second row and column left out: how far they lie beside the spline
 };
 

@@ -21,14 +21,18 @@ class FlankGridGear {
   [[nodiscard]] const GridQuality& quality() const { return grid_.quality; }
   /// Transverse module half way up the teeth at their larger end.
   [[nodiscard]] double module_mm() const;
-  /// h of the root surface at s.
+  /// h of the root surface at s, and the least over the teeth: no higher than any place.
   [[nodiscard]] double root(double s) const;
+  [[nodiscard]] double lowest_root() const;
   /// The turned body behind the teeth, (r, z): from where the end face at s_to stops, half a module below the roots, to
   /// where that at s_from does. Hub, if any, behind the end of the teeth that lies farther along z.
   [[nodiscard]] const std::vector<Vec2>& body() const { return body_; }
 
  private:
   std::vector<Refusal> make_body();
+  /// (r, z) where an end face stops, half a module below the root; least radius of the root between both ends.
+  [[nodiscard]] Vec2 foot_of_end(bool to) const;
+  [[nodiscard]] double least_root_radius() const;
 
   FlankGridParameters parameters_;
   FittedGrid grid_;

@@ -23,10 +23,9 @@ struct GridKernel {
   Flank plus, minus;
   RolledBall ball_plus, ball_minus;
   Meridian root;
-  double radius_mm = 0;          ///< of the ball
-  double middle = 0;             ///< azimuth in the middle of the root: angles are told from there
-  Vec2 tip_from = Vec2::Zero();  ///< (s, h) of the tip surface, and its slope
-  double tip_slope = 0;
+  double radius_mm = 0;  ///< of the ball
+  double middle = 0;     ///< azimuth in the middle of the root: angles are told from there
+  RoundedLine tip_line;  ///< h(s) of the tip surface
 
   [[nodiscard]] const Flank& flank(int side) const { return side > 0 ? plus : minus; }
   [[nodiscard]] const RolledBall& ball(int side) const { return side > 0 ? ball_plus : ball_minus; }
@@ -55,7 +54,7 @@ struct GridKernel {
   // What KernelSpace asks besides.
   template <typename S>
   [[nodiscard]] S tip(const S& s) const {
-    return S(tip_from.y()) + S(tip_slope) * (s - S(tip_from.x()));
+    return tip_line.at(s);
   }
   [[nodiscard]] const tooth_space::Outline& outline() const { return ring; }
   [[nodiscard]] tooth_space::Borders borders(Piece piece) const {
@@ -99,8 +98,9 @@ struct GridKernel {
     using std::acos, std::sin;
     Vec3T<S> c, flank_normal;
     rolled.at(v, c, flank_normal);
-    const S out = S(root.normal[0]) / radius_of(c);
-    const Vec3T<S> root_normal(c[0] * out, c[1] * out, S(root.normal[1]));
+    const auto [outwards, up] = root.outwards(rolled.foot(v));
+    const S out = outwards / radius_of(c);
+    const Vec3T<S> root_normal(c[0] * out, c[1] * out, up);
     const S arc = acos(S(root_normal.dot(flank_normal))), whole = S(1.0) / sin(arc);
     n = root_normal * S(sin(S((S(1.0) - u) * arc)) * whole) + flank_normal * S(sin(S(u * arc)) * whole);
     p = c - n * S(radius_mm);
@@ -110,19 +110,21 @@ struct GridKernel {
   bool root_place(const S& u, const S& v, Vec3T<S>& p, Vec3T<S>& n) const {
     using std::atan2, std::cos, std::sin;
     const TurnT<S> turn{S(middle)};
-    // Where each ball touches it: azimuth from the middle, and the way along the meridian.
-    std::array<S, 2> angle, way;
+    // Where each ball touches it: azimuth from the middle, and the place on the meridian.
+    std::array<S, 2> angle, foot;
     for (const std::size_t k : {0U, 1U}) {
+      const RolledBall& rolled = k == 0 ? ball_plus : ball_minus;
       Vec3T<S> c, unused;
-      (k == 0 ? ball_plus : ball_minus).at(v, c, unused);
+      rolled.at(v, c, unused);
       const Vec3T<S> from_middle = turn.back(c);
       angle[k] = atan2(from_middle[1], from_middle[0]);
-      way[k] = root.way(radius_of(c), c[2]);
+      foot[k] = rolled.foot(v);
     }
-    const S x = way[0] + u * (way[1] - way[0]), a = angle[0] + u * (angle[1] - angle[0]);
-    const S r = S(root.start[0]) + S(root.along[0]) * x, z = S(root.start[1]) + S(root.along[1]) * x;
-    p = turn(Vec3T<S>(r * cos(a), r * sin(a), z));
-    n = turn(Vec3T<S>(S(root.normal[0]) * cos(a), S(root.normal[0]) * sin(a), S(root.normal[1])));
+    const S x = foot[0] + u * (foot[1] - foot[0]), a = angle[0] + u * (angle[1] - angle[0]), c = cos(a), s = sin(a);
+    const auto [r, z] = root.place(x);
+    const auto [outwards, up] = root.outwards(x);
+    p = turn(Vec3T<S>(r * c, r * s, z));
+    n = turn(Vec3T<S>(outwards * c, outwards * s, up));
     return true;
   }
 };

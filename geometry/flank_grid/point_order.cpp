@@ -18,6 +18,7 @@ constexpr double kLeastGap = 2e-4;                // between columns, of the len
 constexpr double kClearGap = 1.5;                 // gaps between columns against those within one
 constexpr double kMissing = 1.7;                  // times the steps beside it: something is missing
 constexpr double kFlat = 0.1;                     // sine of a pitch angle's complement: teeth on a face
+constexpr double kSquareEnds = 0.05;              // mm over the height: ends that lean by less are taken as square
 constexpr double kWidens = 1.1;                   // a space, from the root to the tip
 constexpr int kRounds = 30;
 
@@ -578,10 +579,11 @@ MeridianProposal::MeridianProposal(const OrderedPoints& points) {
   up_ = up.normalized();
   along_ = Vec2(-up_.y(), up_.x());
   if (along_.x() + along_.y() < 0) along_ = -along_;
-  from_ = INFINITY;
-  to_ = -INFINITY;
+  from_.s = INFINITY;
+  to_.s = -INFINITY;
   width_ = INFINITY;
   std::vector<Vec2> first, last;
+  std::array<std::vector<Vec2>, 2> end;  // (h, s) of the outermost columns
   for (const int side : {1, -1}) {
     const GridPoints& g = side > 0 ? points.plus : points.minus;
     for (int j = 0; j < g.columns; ++j) {
@@ -596,10 +598,30 @@ MeridianProposal::MeridianProposal(const OrderedPoints& points) {
     }
     for (const Vec3& p : g.place) {
       const double s = meridian(p).dot(along_);
-      from_ = std::min(from_, s);
-      to_ = std::max(to_, s);
+      from_.s = std::min(from_.s, s);
+      to_.s = std::max(to_.s, s);
       outer_ = std::max(outer_, radius(p));
     }
+  }
+  for (const GridPoints* g : {&points.plus, &points.minus}) {
+    const auto at = [&](int row, int column) {
+      const Vec2 p = meridian(g->place[g->index(row, column)]);
+      return Vec2(p.dot(up_), p.dot(along_));
+    };
+    const bool rises = at(0, g->columns - 1).y() > at(0, 0).y();
+    for (int i = 0; i < g->rows; ++i)
+      for (const bool high : {false, true}) end[high].push_back(at(i, high == rises ? g->columns - 1 : 0));
+  }
+  for (const bool high : {false, true}) {
+    const double lean = line_through(end[high])[0];
+    double low_h = INFINITY, high_h = -INFINITY, outermost = high ? -INFINITY : INFINITY;
+    for (const Vec2& p : end[high]) {
+      low_h = std::min(low_h, p.x());
+      high_h = std::max(high_h, p.x());
+      const double s = p.y() - lean * p.x();
+      outermost = high ? std::max(outermost, s) : std::min(outermost, s);
+    }
+    if (std::abs(lean) * (high_h - low_h) > kSquareEnds) (high ? to_ : from_) = {outermost, lean};
   }
   foot_slope_ = line_through(first)[0];
   const auto [slope, height] = line_through(last);
@@ -610,7 +632,10 @@ MeridianProposal::MeridianProposal(const OrderedPoints& points) {
 
 std::vector<Vec2> MeridianProposal::ends(double height, double slope) const {
   std::vector<Vec2> out;
-  for (const double s : {from_, to_}) out.push_back(s * along_ + (height + slope * s) * up_);
+  for (const End& end : {from_, to_}) {
+    const double s = (end.s + end.lean * height) / (1 - end.lean * slope);
+    out.push_back(s * along_ + (height + slope * s) * up_);
+  }
   return out;
 }
 

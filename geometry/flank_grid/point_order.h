@@ -33,7 +33,8 @@ class MeridianProposal {
  public:
   explicit MeridianProposal(const OrderedPoints& points);
 
-  /// (r, z) at the end of column 0 and at the other: the line through the last rows, between the outermost points.
+  /// (r, z) at the end of column 0 and at the other: the line through the last rows, between the outermost points, or
+  /// between the lines of the outermost columns where these lean.
   [[nodiscard]] std::vector<Vec2> tip() const { return ends(tip_, tip_slope_); }
   /// The root along the first rows on which a ball stands that touches them.
   [[nodiscard]] std::vector<Vec2> root(double fillet_radius_mm) const;
@@ -51,7 +52,12 @@ class MeridianProposal {
   [[nodiscard]] std::vector<Vec2> ends(double height, double slope) const;
 
   Vec2 along_, up_;
-  double from_ = 0, to_ = 0, tip_ = 0, tip_slope_ = 0, foot_slope_ = 0, outer_ = 0, width_ = 0;
+  /// s of an end at h = 0, and its growth by h.
+  struct End {
+    double s = 0, lean = 0;
+  };
+  End from_, to_;
+  double tip_ = 0, tip_slope_ = 0, foot_slope_ = 0, outer_ = 0, width_ = 0;
   std::vector<Foot> feet_;
 };
 

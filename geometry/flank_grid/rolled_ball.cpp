@@ -13,9 +13,10 @@ constexpr double kClose = 2e-13;   // of a length: cubics leave the curve by no 
 constexpr int kMostHalvings = 16;  // of a piece
 constexpr double kPiece = 0.5;     // mm, the longest
 
-/// How far the ball that touches the flank here stays above the root, and its centre and normal.
+/// How far the ball that touches the flank here stays above the root, its centre and normal, and where it stands
+/// square above the root's meridian.
 struct Above {
-  D gap;
+  D gap, foot;
   Vec3T<D> centre, normal;
 };
 Above above(const Flank& flank, const Meridian& root, double radius_mm, double u, double v) {
@@ -24,7 +25,15 @@ Above above(const Flank& flank, const Meridian& root, double radius_mm, double u
   flank.at<D>(D::variable(u, 0), D::variable(v, 1), p, &out.normal);
   out.centre = p + out.normal * D(radius_mm);
   const D r = sqrt(D(out.centre[0] * out.centre[0] + out.centre[1] * out.centre[1]));
-  out.gap = root.height(r, out.centre[2]) - D(radius_mm);
+  const D& z = out.centre[2];
+  const double x = root.foot({r.v, z.v});
+  const auto q = root.place(x), n = root.outwards(x);
+  const D height = D(n[0]) * (r - D(q[0])) + D(n[1]) * (z - D(q[1])),
+          way = D(n[1]) * (r - D(q[0])) - D(n[0]) * (z - D(q[1]));
+  out.gap = height - D(radius_mm);
+  // Where the meridian bends, its place moves on by less or more than the centre does, and x by its part along x.
+  const double sense = n[1] * root.along[0] - n[0] * root.along[1];
+  out.foot = D(x) + way * D(sense / (1 - height.v * root.curvature(x)));
   return out;
 }
 
@@ -53,7 +62,7 @@ std::optional<RolledBall::Sample> RolledBall::sample(const Flank& flank, const M
   std::optional<double> u;
   if (near) {
     // Newton from the neighbour, and only if it stays there.
-    double x = near->value[0] + (v - near->v) * near->slope[0];
+    double x = near->value[kContact] + (v - near->v) * near->slope[kContact];
     const double begun = x;
     for (int k = 0; k < kSteps && !u; ++k) {
       const Above at = above(flank, root, radius_mm, x, v);
@@ -69,13 +78,16 @@ std::optional<RolledBall::Sample> RolledBall::sample(const Flank& flank, const M
   const double slope = -at.gap.d[1] / at.gap.d[0];
   Sample out;
   out.v = v;
-  out.value[0] = *u;
-  out.slope[0] = slope;
-  for (int k = 0; k < 3; ++k) {
-    out.value[1 + k] = at.centre[k].v;
-    out.value[4 + k] = at.normal[k].v;
-    out.slope[1 + k] = at.centre[k].d[0] * slope + at.centre[k].d[1];
-    out.slope[4 + k] = at.normal[k].d[0] * slope + at.normal[k].d[1];
+  const auto set = [&](std::size_t k, const D& x) {
+    out.value[Eigen::Index(k)] = x.v;
+    out.slope[Eigen::Index(k)] = x.d[0] * slope + x.d[1];
+  };
+  set(kContact, D::variable(*u, 0));
+  out.slope[kContact] = slope;
+  set(kFoot, at.foot);
+  for (std::size_t k = 0; k < 3; ++k) {
+    set(kCentre + k, at.centre[int(k)]);
+    set(kNormal + k, at.normal[int(k)]);
   }
   if (!out.value.allFinite() || !out.slope.allFinite()) return {};
   return out;
@@ -87,18 +99,18 @@ bool RolledBall::add(const Flank& flank, const Meridian& root, double radius_mm,
   const auto middle = sample(flank, root, radius_mm, 0.5 * (a.v + b.v), &a);
   if (!middle) return false;
   const Numbers found = 0.5 * (a.value + b.value) + 0.125 * h * (a.slope - b.slope), off = found - middle->value;
-  const double size = middle->value.segment<3>(1).norm();
-  if (h > kPiece || (halvings > 0 && !(off.head<4>().norm() < kClose * size && off.tail<3>().norm() < kClose * 100)))
+  const double size = middle->value.segment<3>(kCentre).norm();
+  if (h > kPiece ||
+      (halvings > 0 && !(off.head<kNormal>().norm() < kClose * size && off.tail<3>().norm() < kClose * 100)))
     return add(flank, root, radius_mm, a, *middle, halvings - 1) &&
            add(flank, root, radius_mm, *middle, b, halvings - 1);
-  auto& cubics = cubics_.emplace_back();
+  auto& cubics = curve_.add(b.v);
   for (std::size_t k = 0; k < kNumbers; ++k) {
     const auto n = Eigen::Index(k);
     const double d = (b.value[n] - a.value[n]) / h;
     cubics[k] = {a.value[n], a.slope[n], (3 * d - 2 * a.slope[n] - b.slope[n]) / h,
                  (a.slope[n] + b.slope[n] - 2 * d) / (h * h)};
   }
-  breaks_.push_back(b.v);
   return true;
 }
 
@@ -132,7 +144,7 @@ std::optional<RolledBall> RolledBall::roll(const Flank& flank, const Meridian& r
   }
   if (samples.size() < 2) return {};
   RolledBall out;
-  out.breaks_ = {samples.front().v};
+  out.curve_.begin(samples.front().v);
   for (std::size_t k = 0; k + 1 < samples.size(); ++k)
     if (!out.add(flank, root, radius_mm, samples[k], samples[k + 1], kMostHalvings)) return {};
   return out;

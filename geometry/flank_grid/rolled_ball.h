@@ -1,5 +1,5 @@
-// A ball that rolls between a flank and the root surface: where it touches the flank, its centre, and the flank's
-// normal there, over the parameter v of the flank. Kept as cubics, once continuous, which leave the true curve by less
+// A ball that rolls between a flank and the root surface: where it touches both, its centre, and the flank's normal
+// there, over the parameter v of the flank. Kept as cubics, once continuous, which leave the true curve by less
 // than rounding shows in any other place.
 #pragma once
 
@@ -8,24 +8,10 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/flank_grid/lifted.h"
+#include "geometry/flank_grid/meridian.h"
 #include "geometry/flank_grid/tensor_spline.h"
 
 namespace toothpath::flank_grid {
-
-/// The meridian of a surface of revolution that is a cone, a cylinder or a plane.
-struct Meridian {
-  Vec2 start = Vec2::Zero();                           ///< (r, z)
-  Vec2 along = Vec2::UnitX(), normal = Vec2::UnitY();  ///< of length 1; normal: out of the body
-  template <typename S>
-  [[nodiscard]] S height(const S& r, const S& z) const {
-    return S(normal[0]) * (r - S(start[0])) + S(normal[1]) * (z - S(start[1]));
-  }
-  template <typename S>
-  [[nodiscard]] S way(const S& r, const S& z) const {
-    return S(along[0]) * (r - S(start[0])) + S(along[1]) * (z - S(start[1]));
-  }
-};
 
 /// A flank and its normal, for any scalar: sign * dP/du x dP/dv.
 struct Flank {
@@ -55,25 +41,30 @@ class RolledBall {
   [[nodiscard]] static std::optional<double> contact(const Flank& flank, const Meridian& root, double radius_mm,
                                                      double v);
 
-  [[nodiscard]] double from() const { return breaks_.front(); }
-  [[nodiscard]] double to() const { return breaks_.back(); }
+  [[nodiscard]] double from() const { return curve_.breaks().front(); }
+  [[nodiscard]] double to() const { return curve_.breaks().back(); }
 
   /// u of the flank where the ball touches it.
   template <typename S>
   [[nodiscard]] S contact(const S& v) const {
-    return lifted(derivatives(base_of(v), kDepth<S>, 0, 1), v, 0, 0);
+    return number(v, kContact);
+  }
+  /// x of the root's meridian where it touches that.
+  template <typename S>
+  [[nodiscard]] S foot(const S& v) const {
+    return number(v, kFoot);
   }
   template <typename S>
   void at(const S& v, Vec3T<S>& centre, Vec3T<S>& normal) const {
-    const auto f = derivatives(base_of(v), kDepth<S>, 1, kNumbers);
+    const auto f = curve_.derivatives(base_of(v), kDepth<S>, kCentre, kNumbers);
     for (std::size_t k = 0; k < 3; ++k) {
-      centre[int(k)] = lifted(f, v, 0, 1 + k);
-      normal[int(k)] = lifted(f, v, 0, 4 + k);
+      centre[int(k)] = lifted(f, v, 0, kCentre + k);
+      normal[int(k)] = lifted(f, v, 0, kNormal + k);
     }
   }
 
  private:
-  static constexpr std::size_t kNumbers = 7;  // contact, centre, normal
+  static constexpr std::size_t kFoot = 0, kContact = 1, kCentre = 2, kNormal = 5, kNumbers = 8;
   using Numbers = Eigen::Matrix<double, kNumbers, 1>;
   struct Sample {
     double v = 0;
@@ -83,32 +74,12 @@ class RolledBall {
                                       const Sample* near);
   bool add(const Flank& flank, const Meridian& root, double radius_mm, const Sample& a, const Sample& b, int halvings);
 
-  /// Of the numbers from one to before another.
-  template <typename B>
-  [[nodiscard]] CurveDerivatives<B, kNumbers> derivatives(const B& v, int order, std::size_t begin,
-                                                          std::size_t end) const {
-    CurveDerivatives<B, kNumbers> out;
-    const auto piece = [&](double x) {
-      const auto k = std::upper_bound(breaks_.begin(), breaks_.end(), x) - breaks_.begin();
-      return std::size_t(std::clamp<std::ptrdiff_t>(k, 1, std::ptrdiff_t(breaks_.size()) - 1)) - 1;
-    };
-    const std::size_t first = piece(low_of(v)), last = piece(high_of(v));
-    for (std::size_t i = first; i <= last; ++i) {
-      const B x = within(v, i == first ? -INFINITY : breaks_[i], i == last ? INFINITY : breaks_[i + 1]) - B(breaks_[i]);
-      for (std::size_t k = begin; k < end; ++k) {
-        const auto& c = cubics_[i][k];
-        for (int a = 0; a <= order; ++a) {
-          const B y = cubic_derivative<B>({B(c[0]), B(c[1]), B(c[2]), B(c[3])}, x, a);
-          if (i == first) out.d[std::size_t(a)][k] = y;
-          else widen(out.d[std::size_t(a)][k], y);
-        }
-      }
-    }
-    return out;
+  template <typename S>
+  [[nodiscard]] S number(const S& v, std::size_t k) const {
+    return lifted(curve_.derivatives(base_of(v), kDepth<S>, k, k + 1), v, 0, k);
   }
 
-  std::vector<double> breaks_;
-  std::vector<std::array<std::array<double, 4>, kNumbers>> cubics_;
+  CubicCurve<kNumbers> curve_;
 };
 
 }  // namespace toothpath::flank_grid

@@ -105,7 +105,7 @@ class Placing {
   /// Which end of the flank the foot lies nearest to, or beyond.
   void note_ends(const Sheet& sheet, const tooth_space::PatchFoot& foot, Candidate& c) const {
     const auto& outline = sheet.space->outline();
-    const double s = outline.chart.along(foot.at.p), mm_per_u = foot.at.pu.norm();
+    const double s = outline.chart.along(foot.at.p), station = outline.station(foot.at.p), mm_per_u = foot.at.pu.norm();
     const auto borders = sheet.space->borders(tooth_space::flank_of(sheet.side));
     const double fillet = sheet.side > 0 ? borders.to : borders.from, tip = sheet.side > 0 ? borders.from : borders.to;
     c.beyond = -std::numeric_limits<double>::infinity();
@@ -115,8 +115,8 @@ class Placing {
         c.end = std::move(name);
       }
     };
-    end(outline.s_from - s, fmt::format("the {} end of the teeth", outline.from));
-    end(s - outline.s_to, fmt::format("the {} end of the teeth", outline.to));
+    end(outline.s_from - station, fmt::format("the {} end of the teeth", outline.from));
+    end(station - outline.s_to, fmt::format("the {} end of the teeth", outline.to));
     end(outline.chart.up(foot.at.p) - sheet.space->tip(s), "the tip");
     const double down = tip > fillet ? -1 : 1;  // sense of u towards the fillet
     end(down * (foot.u - fillet) * mm_per_u, "the line where the fillet begins");

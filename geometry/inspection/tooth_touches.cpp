@@ -65,8 +65,9 @@ PartReach TouchedTeeth::reach() const {
   PartReach out{INFINITY, -INFINITY, 0};
   for (std::size_t ring = 0; ring < gear_.rings.size(); ++ring) {
     const auto& outline = gear_.rings[ring].space->outline();
-    for (const double s : {outline.s_from, outline.s_to})
-      for (const double h : {gear_.lowest_root, top_at(ring, s)}) {
+    for (const double station : {outline.s_from, outline.s_to})
+      for (const double h : {gear_.lowest_root, top_at(ring, gear_.rings[ring].space->tip_s(station))}) {
+        const double s = outline.s_at(station, h);
         out.low_mm = std::min(out.low_mm, outline.chart.z(s, h));
         out.high_mm = std::max(out.high_mm, outline.chart.z(s, h));
         out.radius_mm = std::max(out.radius_mm, outline.chart.r(s, h));
@@ -111,6 +112,7 @@ Result<std::vector<Touch>> TouchedTeeth::flank_places(int spaces) const {
   const auto section = mesh::ToothSection::at(*gear_.rings[ring].space, outline.s_to);
   if (!section) return section.error();
   const double h = 0.5 * (gear_.lowest_root + gear_.rings[ring].space->tip(outline.s_to));
+  const tooth_space::EndLine end = outline.end(true);
   for (int k = 0; k < spaces; ++k) {
     Touch touch;
     touch.what = Touched::end;
@@ -121,8 +123,8 @@ Result<std::vector<Touch>> TouchedTeeth::flank_places(int spaces) const {
     outwards.z() = 0;
     outwards.normalize();
     touch.up = up_at(outwards);
-    touch.normal = placed(1, 0, outwards);
-    touch.surface = placed(outline.s_to, h, outwards);
+    touch.normal = placed(1, -end.lean, outwards).normalized();
+    touch.surface = placed(end.at(h), h, outwards);
     out.push_back(std::move(touch));
   }
   return out;
@@ -135,6 +137,7 @@ Result<std::vector<Touch>> TouchedTeeth::blank_places(int spaces) const {
                lean = std::atan(gear_.rings[ring].space->tip_bend(outline.s_from, outline.s_to).slope.magnitude());
   if (lean > kNoLean) return fail("the top of the blank leans by {:g} deg: it has no flat top to touch", degrees(lean));
   std::vector<Touch> out;
+  const tooth_space::EndLine end = outline.end(true);
   for (int k = 0; k < spaces; ++k)
     for (const Touched what : {Touched::top, Touched::rim}) {
       const Vec3 outwards = turned(Vec3::UnitX(), kTwoPi * k / spaces);
@@ -145,9 +148,9 @@ Result<std::vector<Touch>> TouchedTeeth::blank_places(int spaces) const {
       touch.zone = gear_.rings[ring].zone;
       touch.remark = top ? "TOP OF THE BLANK" : radial ? "RIM OF THE BLANK" : "END OF THE BLANK";
       touch.up = up_at(outwards);
-      touch.normal = top ? touch.up : placed(1, 0, outwards);
-      touch.surface = top ? placed(middle, top_at(ring, middle), outwards)
-                          : placed(outline.s_to, top_at(ring, outline.s_to) - kBelowTop, outwards);
+      const double below = top_at(ring, outline.s_to) - kBelowTop;
+      touch.normal = top ? touch.up : placed(1, -end.lean, outwards).normalized();
+      touch.surface = top ? placed(middle, top_at(ring, middle), outwards) : placed(end.at(below), below, outwards);
       out.push_back(std::move(touch));
     }
   return out;
@@ -169,7 +172,10 @@ std::optional<double> TouchedTeeth::flank_distance(std::size_t ring, int side, c
 std::optional<double> TouchedTeeth::distance(const Touch& touch, const Vec3& x) const {
   const std::size_t ring = ring_of(touch.zone);
   if (touch.what == Touched::top) return gear_.chart().up(x) - top_at(ring, gear_.rings[ring].space->outline().s_to);
-  if (touch.what != Touched::flank) return gear_.chart().along(x) - gear_.rings[ring].space->outline().s_to;
+  if (touch.what != Touched::flank) {
+    const tooth_space::EndLine end = gear_.rings[ring].space->outline().end(true);
+    return (gear_.chart().along(x) - end.at(gear_.chart().up(x))) / std::hypot(1, end.lean);
+  }
   return flank_distance(ring, touch.side, turned(x, -touch.space * gear_.pitch()));
 }
 

@@ -25,16 +25,17 @@ struct Solved {
   Vec3 p = Vec3::Zero();
 };
 
-/// The place of a piece at this u and station s, from a start and a slope ds/dv there. Nothing where it is not found.
+/// The place of a piece at this u and station s, from a start and the station's slope by v there. Nothing where it is
+/// not found.
 std::optional<Solved> at_station(const ToothSpace& space, Piece piece, double u, double s, double start, double slope) {
   constexpr int kMostSteps = 40, kMostHalves = 5;  // a step may leave what the piece is defined on
-  const auto& chart = space.outline().chart;
+  const auto& ring = space.outline();
   const double longest = space.longest_step(piece, s);
   const auto first = space.point(piece, u, start);
   if (!first) return {};
   Solved best{start, first->p};
   const double enough = kOnStation * best.p.norm();
-  double lack = s - chart.along(best.p);
+  double lack = s - ring.station(best.p);
   for (int k = 0; k < kMostSteps; ++k) {
     if (std::abs(lack) <= enough) return best;
     double step = std::clamp(lack / slope, -longest, longest);
@@ -42,7 +43,7 @@ std::optional<Solved> at_station(const ToothSpace& space, Piece piece, double u,
     auto next = space.point(piece, u, best.v + step);
     for (int half = 0; half < kMostHalves && !next; ++half) next = space.point(piece, u, best.v + (step *= 0.5));
     if (!next) return {};
-    const double left = s - chart.along(next->p);
+    const double left = s - ring.station(next->p);
     // Rounding: nothing nearer is found.
     if (std::abs(left) >= 0.5 * std::abs(lack) && std::abs(lack) <= 100 * enough) return best;
     if (std::abs(left) > 100 * enough) slope = (lack - left) / step;
@@ -55,7 +56,7 @@ std::optional<Solved> at_station(const ToothSpace& space, Piece piece, double u,
 /// The line of a piece at station s from a solved place.
 std::optional<SectionLine> followed(const ToothSpace& space, Piece piece, double s, double u_from, double v_from,
                                     double u_to) {
-  const auto& chart = space.outline().chart;
+  const auto& ring = space.outline();
   SectionLine line{u_from, u_to, {}};
   const double step = (u_to - u_from) / SectionLine::kSteps;
   for (int k = 0; k <= SectionLine::kSteps; ++k) {
@@ -71,8 +72,8 @@ std::optional<SectionLine> followed(const ToothSpace& space, Piece piece, double
     }
     const auto q = space.at(piece, u, node.v);
     if (!q) return {};
-    node.sv = chart.along(q->p, q->pv);
-    node.dv = -chart.along(q->p, q->pu) / node.sv;
+    node.sv = ring.station(q->p, q->pv);
+    node.dv = -ring.station(q->p, q->pu) / node.sv;
     if (!std::isfinite(node.dv)) return {};
   }
   return line;
@@ -87,7 +88,7 @@ std::optional<double> first_v(const ToothSpace& space, Piece piece, double u, do
     if (!start) continue;
     const auto q = space.at(piece, u, *start);
     if (!q) continue;
-    const auto solved = at_station(space, piece, u, s, *start, space.outline().chart.along(q->p, q->pv));
+    const auto solved = at_station(space, piece, u, s, *start, space.outline().station(q->p, q->pv));
     if (solved && fits(solved->p)) return solved->v;
   }
   return {};
@@ -107,10 +108,11 @@ std::string ToothSection::station() const { return tooth_space::station(space_->
 Result<ToothSection::Side> ToothSection::make_side(const ToothSpace& space, int side, double s,
                                                    const ToothSection* near) {
   const Side* before = near ? &near->sides_[side > 0 ? 0 : 1] : nullptr;
-  const auto tip = space.tip_edge(side, s, before ? std::optional(before->tip) : std::nullopt);
+  const double s_tip = space.tip_s(s);
+  const auto tip = space.tip_edge(side, s_tip, before ? std::optional(before->tip) : std::nullopt);
   const auto where = [&] { return tooth_space::station(space.outline(), s); };
   if (!tip)
-    return fail("flank {:+d} does not reach the tip surface at {} (height {:.4f} mm)", side, where(), space.tip(s));
+    return fail("flank {:+d} does not reach the tip surface at {} (height {:.4f} mm)", side, where(), space.tip(s_tip));
   const Piece flank = tooth_space::flank_of(side), fillet = tooth_space::fillet_of(side);
   const Borders of_flank = space.borders(flank), of_fillet = space.borders(fillet);
   const double u_end = side > 0 ? of_flank.to : of_flank.from, u_join = side > 0 ? of_fillet.from : of_fillet.to,
@@ -136,6 +138,7 @@ Result<ToothSection> ToothSection::at(const ToothSpace& space, double s, const T
   ToothSection section;
   section.space_ = &space;
   section.s_ = s;
+  section.s_tip_ = space.tip_s(s);
   for (std::size_t k = 0; k < 2; ++k) {
     const int sign = k == 0 ? 1 : -1;
     const auto side = make_side(space, sign, s, near);
@@ -165,7 +168,7 @@ Result<ToothSection> ToothSection::at(const ToothSpace& space, double s, const T
     if (!v) return fail("the root is not defined at {}", section.station());
     section.root_v_ = *v;
     const auto q = space.at(Piece::root, mixed(of_root.from, of_root.to, 0.5), *v);
-    section.root_sv_ = space.outline().chart.along(q->p, q->pv);
+    section.root_sv_ = space.outline().station(q->p, q->pv);
   }
   return section;
 }
@@ -216,8 +219,8 @@ std::optional<SectionPoint> ToothSection::root_point(double fraction) const {
 
 SectionPoint ToothSection::land_point(double azimuth) const {
   const auto& chart = space_->outline().chart;
-  const double h = space_->tip(s_), r = chart.r(s_, h);
-  return {{r * std::cos(azimuth), r * std::sin(azimuth), chart.z(s_, h)}, {azimuth, s_}};
+  const double h = space_->tip(s_tip_), r = chart.r(s_tip_, h);
+  return {{r * std::cos(azimuth), r * std::sin(azimuth), chart.z(s_tip_, h)}, {azimuth, s_tip_}};
 }
 
 std::optional<SectionPoint> ToothSection::point(std::size_t segment, double fraction) const {

@@ -30,7 +30,7 @@ struct SectionLine {
   static constexpr int kSteps = 8;
   struct Node {
     double v = 0, dv = 0;  ///< and dv/du
-    double sv = 0;         ///< ds/dv across the line
+    double sv = 0;         ///< of the station by v, across the line
   };
   double u_from = 0, u_to = 0;
   std::array<Node, kSteps + 1> nodes;
@@ -41,9 +41,10 @@ struct SectionLine {
 
 class ToothSection {
  public:
-  /// Outline at station s [mm]; the space outlives it. `near`: a section of the same ring close by, from which the
-  /// solution is continued. Refused where a flank does not reach the tip surface or its fillet, where the fillets
-  /// overlap and where the two flanks of a tooth have crossed below the tip surface.
+  /// Outline at station s [mm] (tooth_space.h: s where the ends are square); the space outlives it. `near`: a section
+  /// of the same ring close by, from which the solution is continued. Refused where a flank does not reach the tip
+  /// surface or its fillet, where the fillets overlap and where the two flanks of a tooth have crossed below the tip
+  /// surface.
   static Result<ToothSection> at(const tooth_space::ToothSpace& space, double s, const ToothSection* near = nullptr);
 
   /// Point at `fraction` in [0, 1] of a segment, in the direction of growing azimuth. Both neighbours give the same
@@ -83,12 +84,12 @@ class ToothSection {
   [[nodiscard]] SectionPoint land_point(double azimuth) const;
 
   const tooth_space::ToothSpace* space_ = nullptr;
-  double s_ = 0;
+  double s_ = 0, s_tip_ = 0;                                   ///< station, and s of the tip surface there
   std::array<Side, 2> sides_;                                  ///< +1, -1
   double mid_azimuth_ = 0;                                     ///< middle of the land of tooth 0
   double half_land_ = 0;                                       ///< half its angle
   double root_width_ = 0;                                      ///< angle of the root land
-  double root_v_ = 0, root_sv_ = 0;                            ///< in its middle, with ds/dv
+  double root_v_ = 0, root_sv_ = 0;                            ///< in its middle, with the station's slope by v
   std::array<Vec3, 2> tip_edge_{Vec3::Zero(), Vec3::Zero()};   ///< where the flanks meet the tip surface
   std::array<Vec3, 2> root_edge_{Vec3::Zero(), Vec3::Zero()};  ///< both ends of the root land
 };

@@ -59,6 +59,22 @@ std::optional<double> v_at(const ToothSpace& space, Piece piece, double u, doubl
   return {};
 }
 
+std::optional<double> v_at_station(const ToothSpace& space, Piece piece, double u, double station) {
+  constexpr int kSteps = 60;
+  const Outline& ring = space.outline();
+  double s = station;
+  for (int k = 0; k < kSteps; ++k) {
+    const auto v = v_at(space, piece, u, s);
+    if (!v || !ring.leaning) return v;
+    const auto q = space.point(piece, u, *v);
+    if (!q) return {};
+    const double next = ring.s_at(station, ring.chart.up(q->p));
+    if (std::abs(next - s) <= 1e-11 * (1 + std::abs(s))) return v;
+    s = next;
+  }
+  return {};
+}
+
 std::optional<PatchPoint> place_at(const ToothSpace& space, Piece piece, double u, double s) {
   const auto v = v_at(space, piece, u, s);
   return v ? space.at(piece, u, *v) : std::nullopt;

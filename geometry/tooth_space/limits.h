@@ -16,6 +16,8 @@ namespace toothpath::tooth_space {
 
 /// v of a piece at u and s, and the place there; nothing where it is not found.
 [[nodiscard]] std::optional<double> v_at(const ToothSpace& space, Piece piece, double u, double s);
+/// v of a piece at u and a station of the outline; s is that of the station at the height of the place.
+[[nodiscard]] std::optional<double> v_at_station(const ToothSpace& space, Piece piece, double u, double station);
 [[nodiscard]] std::optional<PatchPoint> place_at(const ToothSpace& space, Piece piece, double u, double s);
 
 /// Half way up the flank of a side between fillet and tip, at s; nothing where that is not found.

@@ -17,10 +17,7 @@ class RingPart final : public ToothedPart {
   [[nodiscard]] double module_mm() const override { return numbers_.module_mm; }
   [[nodiscard]] double lowest_root() const override { return numbers_.lowest_root; }
   [[nodiscard]] std::optional<double> groove_floor() const override { return {}; }
-  [[nodiscard]] double blank_top() const override {
-    const auto& ring = space_->outline();
-    return std::max(space_->tip(ring.s_from), space_->tip(ring.s_to));
-  }
+  [[nodiscard]] double blank_top() const override { return space_->highest_tip(); }
   [[nodiscard]] bool in_blank(const Vec3& p) const override {
     const auto& ring = space_->outline();
     const double s = ring.chart.along(p);

@@ -91,6 +91,31 @@ std::optional<CurveBend> azimuth_of_edge(const ToothSpace& space, int side, cons
 
 }  // namespace
 
+double ToothSpace::tip_s(double station) const {
+  constexpr int kSteps = 100;
+  const Outline& ring = outline();
+  if (!ring.leaning) return station;
+  // Ends lean less than a tip surface may rise: the steps shrink.
+  double s = station;
+  for (int k = 0; k < kSteps; ++k) {
+    const double next = ring.s_at(station, tip(s));
+    if (std::abs(next - s) <= 1e-15 * std::abs(s)) return next;
+    s = next;
+  }
+  return s;
+}
+
+double ToothSpace::highest_tip() const {
+  constexpr int kStretches = 256;
+  const Outline& ring = outline();
+  double highest = std::max(tip(ring.s_from), tip(ring.s_to));
+  const double bend = tip_bend(ring.s_from, ring.s_to).bend.magnitude();
+  const double step = (ring.s_to - ring.s_from) / kStretches;
+  if (bend * step * step < 1e-12) return highest;  // straight
+  for (int k = 1; k < kStretches; ++k) highest = std::max(highest, tip(ring.s_from + k * step));
+  return highest + 0.125 * bend * step * step;
+}
+
 std::optional<CurveBend> ToothSpace::tip_azimuth(int side, const EdgePlace& from, double s_from, const EdgePlace& to,
                                                  double s_to) const {
   constexpr int kHalvings = 9;     // near the place where a flank folds back bounds are loose

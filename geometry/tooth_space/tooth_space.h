@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -104,11 +105,21 @@ struct WallBorders {
   }
 }
 
+/// An end of the teeth in the chart, a straight line: s grows by `lean` for each mm of h.
+struct EndLine {
+  double s = 0, h = 0;  ///< a place of it
+  double lean = 0;
+  [[nodiscard]] double at(double height) const { return s + lean * (height - h); }
+};
+
 /// One ring of teeth, by numbers.
 struct Outline {
   Chart chart;
-  double pitch = 0;                           ///< rad
-  double s_from = 0, s_to = 0;                ///< ends of the ring
+  double pitch = 0;             ///< rad
+  double s_from = 0, s_to = 0;  ///< ends of the ring
+  /// Where they are not square to the teeth: the ends that are drawn and measured, between s_from and s_to. Plans and
+  /// proofs take longer teeth, which end at s_from and s_to at every height: the gear lies within them.
+  std::optional<std::array<EndLine, 2>> leaning = {};
   const char *from = "inner", *to = "outer";  ///< and their names
   const char* along = "radius";               ///< what s is called in messages,
   double sign = 1;                            ///< and its sign there: s = -z is told as z
@@ -118,6 +129,32 @@ struct Outline {
   /// Two values of s as messages tell them, in rising order.
   [[nodiscard]] std::pair<double, double> told(double a, double b) const {
     return {std::min(sign * a, sign * b), std::max(sign * a, sign * b)};
+  }
+  /// The end at s_from, or that at s_to.
+  [[nodiscard]] EndLine end(bool last) const {
+    return leaning ? (*leaning)[last ? 1 : 0] : EndLine{last ? s_to : s_from, 0, 0};
+  }
+  /// A station runs from s_from at one end to s_to at the other, evenly along s at each height: s itself where the ends
+  /// are square. Of a place in the chart, and its change while that moves by (ds, dh).
+  [[nodiscard]] double station(double s, double h) const {
+    if (!leaning) return s;
+    const double a = end(false).at(h), b = end(true).at(h);
+    return s_from + (s - a) / (b - a) * (s_to - s_from);
+  }
+  [[nodiscard]] double station(const Vec3& p) const { return station(chart.along(p), leaning ? chart.up(p) : 0); }
+  [[nodiscard]] double station(const Vec3& p, const Vec3& d) const {
+    const double ds = chart.along(p, d);
+    if (!leaning) return ds;
+    const EndLine first = end(false), last = end(true);
+    const double s = chart.along(p), h = chart.up(p), dh = chart.up(p, d), a = first.at(h), length = last.at(h) - a,
+                 share = (s - a) / length;
+    return (ds - first.lean * dh - share * (last.lean - first.lean) * dh) / length * (s_to - s_from);
+  }
+  /// s of a station at a height.
+  [[nodiscard]] double s_at(double station, double h) const {
+    if (!leaning) return station;
+    const double a = end(false).at(h), b = end(true).at(h);
+    return a + (station - s_from) / (s_to - s_from) * (b - a);
   }
 };
 
@@ -190,6 +227,9 @@ class ToothSpace {
   /// the edge cannot leave a box about them in which its slope is bounded. Nothing where no such box is found.
   [[nodiscard]] virtual std::optional<CurveBend> tip_azimuth(int side, const EdgePlace& from, double s_from,
                                                              const EdgePlace& to, double s_to) const;
+  /// s of the tip surface at a station, and the largest h of the tip surface over the ring: no lower than any place.
+  [[nodiscard]] double tip_s(double station) const;
+  [[nodiscard]] double highest_tip() const;
 
  protected:
   ToothSpace() = default;

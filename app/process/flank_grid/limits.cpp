@@ -21,11 +21,9 @@ std::string limits_json(const FlankGridGear& gear) {
   const GridSpace& space = gear.space();
   const GridQuality& q = gear.quality();
   const auto known = [](const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); };
-  const Json points = {{"rows", gear.parameters().plus.rows},
-                       {"columns", gear.parameters().plus.columns},
-                       {"spacing_error", known(q.spacing_mm)},
-                       {"going_on", q.going_on},
-                       {"normals", known(q.normals_rad)}};
+  const Json points = {{"rows", gear.parameters().plus.rows},  {"columns", gear.parameters().plus.columns},
+                       {"spacing_error", known(q.spacing_mm)}, {"going_on", q.going_on},
+                       {"meridian_corners", q.corners_mm},     {"normals", known(q.normals_rad)}};
   const Json out = {{"schema", 1},
                     {"module", gear.module_mm()},
                     {"fillet_radius", gear.parameters().fillet_radius_mm},
@@ -51,6 +49,12 @@ std::vector<proof::LedgerEntry> point_ledger(const FlankGridGear& gear) {
     out.push_back(process::unmeasured(
         ErrorSource::given_normals, *q.normals_rad * kLever,
         fmt::format("{:.4f} mrad to the spline's at {}, over {:g} mm", 1e3 * *q.normals_rad, q.normals_at, kLever)));
+  if (q.corners_mm > 0)
+    out.push_back(process::unmeasured(
+        ErrorSource::meridian_corners, q.corners_mm,
+        fmt::format("the lines through the points of root and tip turn in rounded corners, at most this far beside "
+                    "them: {}",
+                    q.corners_at)));
   out.push_back({ErrorSource::continuation,
                  0,
                  {},

@@ -10,6 +10,8 @@
 namespace toothpath::flank_grid {
 namespace {
 
+constexpr int kStations = 129;  // at which meridians that bend are looked at
+
 std::string gear_words(const FlankGridGear& gear) {
   const FlankGridParameters& p = gear.parameters();
   const auto& ring = gear.space().outline();
@@ -32,7 +34,10 @@ milled::ToothedGear toothed(FlankGridGear made) {
   out.owner = owner;
   // Over the teeth and the body behind them.
   double outer = 0, inner = INFINITY, root_low = INFINITY, root_high = -INFINITY, z_low = INFINITY, z_high = -INFINITY;
-  for (const double s : {ring.s_from, ring.s_to}) {
+  const bool bent = !space.kernel().root.bent.straight() || !space.kernel().tip_line.straight();
+  const int stations = bent ? kStations : 2;
+  for (int k = 0; k < stations; ++k) {
+    const double s = k + 1 < stations ? ring.s_from + (ring.s_to - ring.s_from) * k / (stations - 1) : ring.s_to;
     const double tip = space.tip(s), root = gear.root(s), z = chart.z(s, root);
     outer = std::max({outer, chart.r(s, tip), chart.r(s, root)});
     inner = std::min(inner, chart.r(s, root));

@@ -34,13 +34,20 @@ Json ring_zone(const tooth_space::ToothSpace& space) {
   Json flanks = Json::array();
   const double stations[] = {ring.s_from, 0.5 * (ring.s_from + ring.s_to), ring.s_to};
   double ball = INFINITY, land = INFINITY;
-  for (const double s : stations) {
-    ball = std::min(ball, tooth_space::root_ball_radius_mm(space, s));
-    land = std::min(land, tooth_space::top_land_mm(space, s));
+  // s of a station in the root.
+  const auto s_root = [&](double station) {
+    const auto v = tooth_space::v_at_station(space, tooth_space::Piece::root, 0.5, station);
+    const auto q = v && ring.leaning ? space.point(tooth_space::Piece::root, 0.5, *v) : std::nullopt;
+    return q ? ring.chart.along(q->p) : station;
+  };
+  for (const double station : stations) {
+    ball = std::min(ball, tooth_space::root_ball_radius_mm(space, s_root(station)));
+    land = std::min(land, tooth_space::top_land_mm(space, space.tip_s(station)));
   }
   for (const int side : {1, -1}) {
     double fillet = INFINITY;
-    for (const double s : stations) fillet = std::min(fillet, tooth_space::fillet_radius_min_mm(space, s, side));
+    for (const double station : stations)
+      fillet = std::min(fillet, tooth_space::fillet_radius_min_mm(space, s_root(station), side));
     flanks.push_back({{"side", side},
                       {"fillet_radius_min", fillet},
                       {"root_ball", ball},

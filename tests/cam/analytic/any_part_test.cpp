@@ -13,6 +13,7 @@
 #include "geometry/base/angle.h"
 #include "geometry/bevel_gear/part.h"
 #include "geometry/cylindrical/part.h"
+#include "geometry/tooth_space/exact_space.h"
 #include "geometry/tooth_space/limits.h"
 #include "tests/geometry/bevel_gear/samples.h"
 #include "tests/geometry/cylindrical/samples.h"
@@ -409,6 +410,51 @@ TEST(ToolPathsOnACone, CutTheSpaceAndNothingElse) {
 }
 TEST(ToolPathsOnACone, CutCurvedSpacesAndNothingElse) {
   tool_paths_cut_the_space_and_nothing_else(solid_of(narrow_curved(6, 0)), 1.6);
+}
+
+/// A bevel gear by points between ends that lean, over a ridge in the root and under a crowned tip. The solid is told
+/// by the straight lines of its meridian and the flanks that the points were taken from; its fillets are left out.
+TEST(ToolPathsOnACone, CutABentGearByPointsAndNothingElse) {
+  const auto octoid = narrow_bevel(straight_bevel::Form::octoid);
+  const auto exact = straight_bevel::part_of(straight_bevel::StraightBevelGear::make(octoid).value());
+  const auto made = flank_grid::FlankGridGear::make(
+      sampled(exact->space(0), octoid.teeth, {9, 9, 0.75}, {0.12, -0.1, 0.02, 0.1, 0.15}));
+  ASSERT_TRUE(made) << made.error().front().diagnostic.message;
+  const auto gear = std::make_shared<const flank_grid::FlankGridGear>(made.value());
+  const auto& ring = gear->space().outline();
+  ASSERT_TRUE(ring.leaning);
+  const auto height = [&ring](const std::vector<Vec2>& line, double s) {
+    std::vector<Vec2> at;
+    for (const Vec2& p : line)
+      at.emplace_back(ring.chart.along(Vec3(p.x(), 0, p.y())), ring.chart.up(Vec3(p.x(), 0, p.y())));
+    if (at.front().x() > at.back().x()) std::reverse(at.begin(), at.end());
+    const std::size_t k = s < at[1].x() ? 0 : 1;
+    return at[k].y() + (s - at[k].x()) / (at[k + 1].x() - at[k].x()) * (at[k + 1].y() - at[k].y());
+  };
+  const auto holds = [&](const Vec3& p) {
+    const double s = ring.chart.along(p), h = ring.chart.up(p), station = ring.station(p);
+    if (station < ring.s_from || station > ring.s_to || h > height(gear->parameters().tip, s)) return false;
+    if (h < height(gear->parameters().root, s)) return true;
+    std::array<double, 2> wall{};
+    for (const int side : {1, -1}) {
+      const Piece piece = tooth_space::flank_of(side);
+      const auto& of = exact->space(0);
+      const tooth_space::Borders b = of.borders(piece);
+      const double foot = std::isfinite(b.from) ? b.from : b.to;
+      const double s_exact = of.outline().chart.along(p), h_exact = of.outline().chart.up(p);
+      const auto low = tooth_space::place_at(of, piece, foot, s_exact);
+      if (!low || of.outline().chart.up(low->p) > h_exact) return false;
+      const double u = 0.5 * (foot + of.tip_edge(side, s_exact)->u);
+      const auto at =
+          tooth_space::search_place(of, piece, s_exact, h_exact, {u, tooth_space::v_at(of, piece, u, s_exact).value()});
+      wall[side > 0 ? 0 : 1] = azimuth(at.value().at.p);
+    }
+    const double turn = std::remainder(azimuth(p), ring.pitch);
+    return turn < wall[0] || turn > wall[1];
+  };
+  tool_paths_cut_the_space_and_nothing_else({flank_grid::part_of(*gear), holds}, 1.2);
+  const analytic::GearDistance part(flank_grid::part_of(*gear), 1.5);
+  EXPECT_EQ(part.unproven(), 0u);
 }
 
 // Teeth that taper: what stands above the first layer is no thicker at the large end than a layer.

@@ -168,5 +168,23 @@ TEST(PointOrder, TipAndRootFollowFromThePoints) {
   for (const double rho : {0.5, 1.2}) EXPECT_NEAR(meridians.fillet_radius_mm(meridians.root(rho)), rho, 1e-9);
 }
 
+/// Ends that are no parallels are proposed as their columns lean; grids over lines that bend are put into order.
+TEST(PointOrder, EndsFollowTheOutermostColumns) {
+  const auto part = straight_bevel::part_of(straight_bevel::StraightBevelGear::make(khk_pinion()).value());
+  for (const auto& [rows, columns] : {std::pair{5, 9}, {9, 17}}) {
+    const auto gear =
+        sampled(part->space(0), khk_pinion().teeth, {rows, columns, 0.75, true}, {0.12, -0.1, 0.03, 0, 0});
+    expect_same(gear, 5);
+    const auto ordered = order_points(loose(gear, true));
+    ASSERT_TRUE(ordered) << ordered.error().text();
+    const flank_grid::MeridianProposal meridians(*ordered);
+    EXPECT_LT((meridians.tip().front() - gear.tip.front()).norm(), 1e-6);
+    EXPECT_LT((meridians.tip().back() - gear.tip.back()).norm(), 1e-6);
+    const auto root = meridians.root(0.75);
+    const Vec2 a = meridians.tip().front() - root.front(), b = gear.tip.front() - gear.root.front();
+    EXPECT_LT(std::abs(a.normalized().dot(Vec2(-b.y(), b.x()).normalized())), 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace toothpath::test
