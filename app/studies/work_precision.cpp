@@ -144,6 +144,22 @@ page::PageTable table_of(const std::vector<StudyRun>& runs) {
   return table;
 }
 
+/// The same for the page: what was asked and found, and the seconds of the stages, which would run off it.
+std::vector<page::PageTable> page_tables(const page::PageTable& table) {
+  const auto seconds = std::find(table.columns.begin(), table.columns.end(), "seconds") - table.columns.begin();
+  page::PageTable found{table.title, {}, {}, table.note}, stages{"Seconds by stage", {}, {}, ""};
+  const auto share = [&](const std::vector<std::string>& from, std::vector<std::string>& a,
+                         std::vector<std::string>& b) {
+    a.assign(from.begin(), from.begin() + seconds + 1);
+    a.push_back(from.back());
+    b.assign(from.begin(), from.begin() + 2);
+    b.insert(b.end(), from.begin() + seconds, from.end() - 1);
+  };
+  share(table.columns, found.columns, stages.columns);
+  for (const auto& row : table.rows) share(row, found.rows.emplace_back(), stages.rows.emplace_back());
+  return {std::move(found), std::move(stages)};
+}
+
 /// The runs of one sweep with the job's own run among them, by factor.
 std::vector<const StudyRun*> line_of(const std::vector<StudyRun>& runs, const std::string& name) {
   std::vector<const StudyRun*> line;
@@ -296,7 +312,7 @@ commands::CommandOutcome study_work_precision(const WorkPrecisionRequest& reques
           "tolerances where that is more; \"verified\" is the verdict with the job's own tolerance of {:.4f} mm.",
           kGougePerChord, job.verify.gouge_tolerance_mm)};
   page.charts = charts_of(runs, job.verify.gouge_tolerance_mm);
-  page.tables = {table};
+  page.tables = page_tables(table);
 
   commands::CommandOutcome outcome;
   outcome.report_json = json_of(job, table);

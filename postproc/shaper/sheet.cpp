@@ -25,7 +25,9 @@ constexpr std::string_view kStyle =
     "td:first-child{white-space:nowrap;width:1%}.w{border:.4mm solid #b00;padding:.8mm 1.6mm;margin:1mm "
     "0}.two{display:grid;grid-template-columns:1fr 1fr;gap:0 "
     "5mm}.box{display:inline-block;width:3.2mm;height:3.2mm;border:.3mm solid "
-    "#111;margin-right:1mm;vertical-align:-.4mm}tr,li,.w{break-inside:avoid}";
+    "#111;margin-right:1mm;vertical-align:-.4mm}tr,li,.w{break-inside:avoid}@media screen and "
+    "(max-width:700px){body{font-size:11pt;padding:3mm}.two{grid-template-columns:minmax(0,1fr)}.k,.two "
+    "table{display:block;overflow-x:auto}b.v{white-space:normal}svg{max-width:100%;height:auto}}";
 
 std::string escaped(std::string_view text) {
   std::string out;
@@ -163,7 +165,8 @@ std::string steps(const ShaperSetup& s) {
 std::string pass_table(const ShaperSetup& s) {
   std::string out = fmt::format(
       "<div><h2>Passes and inspection</h2>\n<p>Arcs on the tip surface at radius {} after a whole turn at that "
-      "depth.</p>\n<table><tr><th>double stroke<th>X mm<th>depth mm<th>time min<th>tooth mm<th>space mm</tr>\n",
+      "depth.</p>\n<table><tr><th scope=col>double stroke<th scope=col>X mm<th scope=col>depth mm<th scope=col>time "
+      "min<th scope=col>tooth mm<th scope=col>space mm</tr>\n",
       value(s.inspection_radius_mm, 3, "mm"));
   for (const auto& p : s.passes)
     out += fmt::format("<tr><td>{}<td>{:.3f}<td>{:.3f}<td>{:.2f}<td>{:.3f}<td>{:.3f}</tr>\n", p.stroke, p.x_mm,
@@ -175,9 +178,10 @@ std::string pass_table(const ShaperSetup& s) {
 
 std::string study_table(const ShaperSetup& s, const std::vector<FeedStudyRow>& study) {
   std::string out = fmt::format(
-      "<div><h2>Time and error</h2>\n<p>Infeed {}, one turn {}, total {} without set-up.</p>\n<table><tr><th>circular "
-      "feed mm<th>time min<th>left on flanks &micro;m, largest of {} "
-      "places<th>rms</tr>\n",
+      "<div><h2>Time and error</h2>\n<p>Infeed {}, one turn {}, total {} without set-up.</p>\n<table><tr><th "
+      "scope=col>circular "
+      "feed mm<th scope=col>time min<th scope=col>left on flanks &micro;m, largest of {} "
+      "places<th scope=col>rms</tr>\n",
       value(s.infeed_min, 2, "min"), value(s.generating_min, 2, "min"), value(s.total_min(), 2, "min"),
       study.empty() ? 0 : study.front().deviation.points);
   for (const auto& row : study)
@@ -241,8 +245,10 @@ std::vector<double> compared_feeds(const ShaperSetup& s) {
 }
 
 std::string shaper_html(const ShaperSetup& s, const std::vector<FeedStudyRow>& study) {
-  std::string out = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Gear shaper set-up: " +
-                    escaped(s.job_name) + "</title>\n<style>" + std::string(kStyle) + "</style></head><body>\n";
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
+      "content=\"width=device-width\"><title>Gear shaper set-up: " +
+      escaped(s.job_name) + "</title>\n<style>" + std::string(kStyle) + "</style></head><body>\n";
   out += header(s) + steps(s);
   out += "<div class=two>\n" + pass_table(s) + study_table(s, study) + "</div>\n";
   out += constants_table(s);

@@ -54,7 +54,7 @@ TEST(RestartCommand, SpreadProgramFromTheMiddleIsProven) {
   const auto line = 2 + std::count(program.begin(), program.begin() + static_cast<std::ptrdiff_t>(at), '\n');
   EXPECT_EQ(program.substr(program.find('\n', at) + 1, 6), "#1=29\n");
   const std::string sheet = file_text(dir / "out/setup.html");
-  EXPECT_NE(sheet.find("set in line " + std::to_string(line)), std::string::npos);
+  EXPECT_NE(sheet.find("set place in line " + std::to_string(line)), std::string::npos);
   EXPECT_NE(sheet.find("taken as done"), std::string::npos);
   EXPECT_NE(file_text(dir / "out/report.html").find("taken as done"), std::string::npos);
   // Lengths: a longer tool may use what the gouge tolerance leaves, never less.

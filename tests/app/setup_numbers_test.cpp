@@ -2,11 +2,13 @@
 // moves the surface.
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <random>
 
 #include "app/process/proof_limits.h"
 #include "app/report/sheet/length_tolerance.h"
 #include "app/report/sheet/part_swing.h"
+#include "app/report/sheet/restart_section.h"
 #include "app/report/sheet/setup_sheet.h"
 #include "geometry/base/angle.h"
 
@@ -98,6 +100,62 @@ TEST(SetupSheet, NamesTheCoolantAndItsWords) {
   job.coolant = machines::Coolant::through_spindle;
   EXPECT_NE(sheet().find("through_spindle: on with M150, off with M151"), std::string::npos);
   EXPECT_NE(sheet().find("<td>a gear</td>"), std::string::npos);
+}
+
+/// The line that the words of a cell give a tooth: "tooth k, 0 to 59: line 36 + 3 k; tooth 60: line 300". 0: none.
+int line_told(const std::string& cell, int tooth) {
+  for (std::size_t at = 0; at < cell.size();) {
+    const std::size_t end = std::min(cell.find("; ", at), cell.size());
+    const std::string words = cell.substr(at, end - at);
+    at = end + 2;
+    int first = 0, last = 0, start = 0, step = 0;
+    char sign = '+';
+    if (std::sscanf(words.c_str(), "tooth k, %d to %d: line %d %c %d k", &first, &last, &start, &sign, &step) == 5) {
+      if (tooth >= first && tooth <= last) return start + (sign == '-' ? -step : step) * tooth;
+    } else if (std::sscanf(words.c_str(), "tooth k, %d to %d: line %d k", &first, &last, &step) == 3) {
+      if (tooth >= first && tooth <= last) return step * tooth;
+    } else if (std::sscanf(words.c_str(), "tooth %d: line %d", &first, &start) == 2) {
+      if (tooth == first) return start;
+    }
+  }
+  return 0;
+}
+
+// Teeth whose lines follow a rule stand in one cell; others in the appendix. What is told is the line of the menu.
+TEST(RestartSheet, TellsTheLineOfEveryTooth) {
+  job::Job job;
+  job.file = "/x/job.toml";
+  job.setup.emplace();
+  job.setup->work_offset = "G54";
+  std::mt19937 random(20261127);
+  for (int n = 0; n < 200; ++n) {
+    report::RunReport report;
+    report.teeth = 10 + int(random() % 50);
+    restart::RestartOperation op;
+    op.tool = 1;
+    op.at = {20, -1};
+    const int breaks = int(random() % 7), first = n % 3 == 0 ? int(random() % 5) : 0;
+    int line = 1 + int(random() % 60), step = 1 + int(random() % 9);
+    for (int k = first; k < report.teeth; ++k) {
+      op.teeth.push_back({k, k, {line, -1}});
+      if (breaks > 0 && int(random() % unsigned(report.teeth)) < breaks) step = 1 + int(random() % 9);
+      line += step;
+    }
+    report.restart_menu = restart::RestartMenu{{10, -1}, {op}};
+    sheet::Sheet table, appendix;
+    sheet::restart_section(table, job, report);
+    sheet::restart_appendix(appendix, report);
+    const std::string said = std::move(table).finish(), rest = std::move(appendix).finish();
+    const std::size_t cell = said.rfind("<td>", said.find("</tbody>")) + 4;
+    const std::string words = said.substr(cell, said.find("</td>", cell) - cell);
+    const bool listed = words == "see the appendix";
+    EXPECT_EQ(listed, rest.find("first line of every tooth") != std::string::npos);
+    if (breaks == 0) { EXPECT_FALSE(listed) << words; }
+    for (const auto& t : op.teeth) {
+      if (listed) EXPECT_NE(rest.find(fmt::format("<b>{}</b> {}</span>", t.tooth, t.at.line)), std::string::npos);
+      else EXPECT_EQ(line_told(words, t.tooth), t.at.line) << words;
+    }
+  }
 }
 
 // A ball that touches a surface everywhere, moved along its axis: no place is cut deeper than the share says.

@@ -221,7 +221,7 @@ std::string contact_section_body(const RolledPair& a) {
   }
   for (const auto& t : tables) {
     out += "<div class=\"table\"><table><thead><tr>";
-    for (const auto& column : t.columns) out += fmt::format("<th>{}</th>", svg::html_escape(column));
+    for (const auto& column : t.columns) out += fmt::format("<th scope=\"col\">{}</th>", svg::html_escape(column));
     out += "</tr></thead><tbody>\n";
     for (const auto& row : t.rows) {
       out += "<tr>";

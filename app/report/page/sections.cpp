@@ -46,7 +46,7 @@ std::string table(const PageTable& t) {
   if (!t.title.empty()) out += fmt::format("<caption>{}</caption>", svg::html_escape(t.title));
   out += "<thead><tr>";
   for (std::size_t c = 0; c < t.columns.size(); ++c)
-    out += fmt::format("<th{}>{}</th>", numeric[c] ? " class=\"n\"" : "", svg::html_escape(t.columns[c]));
+    out += fmt::format("<th scope=\"col\"{}>{}</th>", numeric[c] ? " class=\"n\"" : "", svg::html_escape(t.columns[c]));
   out += "</tr></thead><tbody>\n";
   for (const auto& row : t.rows) {
     out += "<tr>";

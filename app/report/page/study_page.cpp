@@ -20,6 +20,9 @@ constexpr std::string_view kSvgStyle =
     "2a8560}.s3{stroke:#8a4c9f}.s4{stroke:#a07c12}.s5{stroke:#b8415b}.s6{stroke:#4f6d8a}.s7{stroke:#6b7a1f}.dot{fill:#"
     "fff;stroke-width:1.6}</style><rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>";
 
+constexpr std::size_t kLongestCell = 48;       // characters that stand in one line
+constexpr std::size_t kMostLooseColumns = 10;  // more of them stand closer
+
 /// Characters on the screen, not bytes: every byte of UTF-8 that begins a character.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(
@@ -38,16 +41,42 @@ std::string csv_cell(const std::string& text) {
   return quoted + "\"";
 }
 
+/// A column as a reader writes it: "left_bound_um" of a CSV file is "left bound [um]". "F_t [kN]" is one already.
+std::string heading_of(std::string column) {
+  const auto of_a_file = [](char c) { return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
+  if (!std::all_of(column.begin(), column.end(), of_a_file) || column.find('_') < 2) return column;
+  for (const std::string_view unit : {"_um", "_mm", "_s", "_deg", "_min"})
+    if (column.ends_with(unit))
+      return heading_of(column.substr(0, column.size() - unit.size())) + " [" + std::string(unit.substr(1)) + "]";
+  std::replace(column.begin(), column.end(), '_', ' ');
+  return column;
+}
+
+/// The last column holds sentences: each stands in a row of its own, as wide as the table.
+bool ends_in_sentences(const PageTable& table) {
+  return std::any_of(table.rows.begin(), table.rows.end(),
+                     [](const auto& row) { return !row.empty() && width_of(row.back()) > kLongestCell; });
+}
+
 std::string table_html(const PageTable& table) {
-  std::string out =
-      fmt::format("<div class=table><table><caption>{}</caption><thead><tr>", svg::html_escape(table.title));
-  for (const auto& column : table.columns) out += fmt::format("<th>{}</th>", svg::html_escape(column));
+  const bool sentences = ends_in_sentences(table);
+  const std::size_t columns = table.columns.size() - (sentences ? 1 : 0);
+  std::string out = fmt::format("<div class=\"table{}\"><table><caption>{}</caption><thead><tr>",
+                                columns > kMostLooseColumns ? " dense" : "", svg::html_escape(table.title));
+  for (std::size_t k = 0; k < columns; ++k)
+    out += fmt::format("<th scope=col>{}</th>", svg::html_escape(heading_of(table.columns[k])));
   out += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
-    out += "<tr>";
-    for (const auto& cell : row)
-      out += fmt::format("<td{}>{}</td>", numeric(cell) ? " class=n" : "", svg::html_escape(cell));
+    const bool said = sentences && !row.back().empty();
+    out += said ? "<tr class=said>" : "<tr>";
+    for (std::size_t k = 0; k < std::min(columns, row.size()); ++k)
+      out += fmt::format("<td{}>{}</td>",
+                         numeric(row[k])                    ? " class=n"
+                         : width_of(row[k]) <= kLongestCell ? " class=t"
+                                                            : "",
+                         svg::html_escape(row[k]));
     out += "</tr>\n";
+    if (said) out += fmt::format("<tr><td class=said colspan={}>{}</td></tr>\n", columns, svg::html_escape(row.back()));
   }
   out += "</tbody></table></div>\n";
   if (!table.note.empty()) out += fmt::format("<p class=note>{}</p>\n", svg::html_escape(table.note));

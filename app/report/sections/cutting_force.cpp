@@ -34,6 +34,7 @@ report::Section cutting_force(const SectionInput& input) {
   if (section.rows.empty()) return section;
   section.title = "Force and deflection";
   section.id = "force";
+  section.sheet_rows = 0;
   section.columns = {"op",           "T",       "compliance um/N", "force N",     "deflection um",
                      "may leave um", "chip um", "mean chip um",    "engaged deg", "torque N mm",
                      "remark"};

@@ -48,6 +48,7 @@ report::Section engagement(const SectionInput& input) {
   if (section.rows.empty()) return section;
   section.title = "Engagement";
   section.id = "engagement";
+  section.sheet_rows = 0;
   section.columns = {"op",
                      "engaged deg",
                      "but in passes that open a layer",

@@ -7,6 +7,7 @@ namespace toothpath::sections {
 namespace {
 
 constexpr std::size_t kMostRows = 12;
+constexpr std::size_t kNearestOnSheet = 3;  // behind those that fail
 
 std::string number(int value) { return value < 0 ? "" : std::to_string(value); }
 
@@ -29,6 +30,7 @@ report::Section machine_moves_of(const machines::Machine& machine, const report:
                             report::joints_text(machine, m.joints)});
   };
   for (const bodies::Meeting& m : found.failed) add(m, true);
+  section.sheet_rows = section.rows.size() + kNearestOnSheet;
   for (const bodies::Meeting& m : found.nearest) add(m, false);
   section.note = fmt::format(
       "Simple bodies of the machine file, the part, what holds it, and the tool, against each other: {} pairs on all "

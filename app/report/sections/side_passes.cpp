@@ -48,6 +48,7 @@ report::Section side_passes(const SectionInput& input) {
   if (last.empty()) return section;
   section.title = "Line milling";
   section.id = "line-milling";
+  section.sheet_rows = 0;
   section.columns = {"op",        "zone",       "flank",   "strip",   "tilt deg", "lean along the tooth deg",
                      "misfit um", "contact mm", "records", "rotaries"};
   for (const report::PassReport& p : input.report.passes) {

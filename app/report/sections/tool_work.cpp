@@ -52,6 +52,7 @@ report::Section tool_work(const SectionInput& input) {
   if (input.report.restart) return section;
   section.title = "Work of the tools";
   section.id = "tool-work";
+  section.sheet_rows = 0;
   section.columns = {"T",
                      "operations",
                      "in the cut m",

@@ -148,8 +148,8 @@ class PartDrawing {
     for (const double x : {a, b}) line(x, std::min(from, y) + 0.6, x, y + 1, "#777");
     line(a, y, b, y, "#111");
     out_ += fmt::format("<path d='M{0:.2f} {2:.2f}l2 -.7v1.4zM{1:.2f} {2:.2f}l-2 -.7v1.4z' fill='#111'/>", a, b, y);
-    out_ += fmt::format("<text x='{:.2f}' y='{:.2f}' text-anchor='middle'>{} {}</text>", 0.5 * (a + b) + 14, y - 0.8,
-                        name, millimetres(2 * radius));
+    out_ += fmt::format("<text x='{:.2f}' y='{:.2f}' >{} {}</text>", std::max(b, px(at_.x() + part_.outer_radius)) + 2,
+                        y + 0.9, name, millimetres(2 * radius));
   }
 
   const joints::Setup& setup_;
@@ -167,26 +167,89 @@ std::string part_sketch(const joints::Setup& setup, const PartOutline& part, con
   return PartDrawing(setup, part, machine).svg();
 }
 
-std::string tool_sketch(const tool::ToolAssembly& tool) {
-  double holder_height = 0, widest = std::max(tool.diameter_mm, tool.shank_diameter_mm);
-  for (const auto& segment : tool.holder) {
-    holder_height += segment.height_mm;
-    widest = std::max({widest, segment.lower_diameter_mm, segment.upper_diameter_mm});
-  }
-  const double height = std::max(tool.length_mm, tool.stick_out_mm + holder_height);
-  std::string svg =
-      fmt::format("<svg viewBox='{:.3f} {:.3f} {:.3f} {:.3f}' style='height:34mm' role=img aria-label='tool {}'>",
-                  -widest / 2 - 1, -height - 1, widest + 2, height + 2, tool.number);
-  for (const auto& body : tool::outline_of(tool)) {
-    const char* fill = tool::cuts(body.body) ? "#e8c66a" : body.body == tool::Body::shank ? "#bbb" : "#888";
-    std::string right, left;
-    for (const Vec2& p : body.line) {
-      right += fmt::format("{}{:.3f} {:.3f}", right.empty() ? "M" : "L", p[1], -p[0]);
-      left = fmt::format("L{:.3f} {:.3f}", -p[1], -p[0]) + left;
+namespace {
+
+constexpr double kToolHeight = 40, kToolSide = 17,
+                 kToolFoot = 9;     // of paper: the tool, the room for words beside and below it
+constexpr double kLeastWord = 3.2;  // between two words
+
+/// A tool from the side with its lengths, in mm of paper: the tip below, lengths from the tip up at the right, the
+/// length to the gauge line at the left.
+class ToolDrawing {
+ public:
+  explicit ToolDrawing(const tool::ToolAssembly& tool) : tool_(tool) {
+    double holder = 0, widest = std::max(tool.diameter_mm, tool.shank_diameter_mm);
+    for (const auto& segment : tool.holder) {
+      holder += segment.height_mm;
+      widest = std::max({widest, segment.lower_diameter_mm, segment.upper_diameter_mm});
     }
-    svg += fmt::format("<path d='{}{}Z' fill='{}' stroke='#333' stroke-width='.3'/>", right, left, fill);
+    top_ = std::max(tool.length_mm, tool.stick_out_mm + holder);
+    scale_ = kToolHeight / top_;
+    half_ = 0.5 * scale_ * widest;
   }
-  return svg + "</svg>\n";
-}
+
+  std::string svg() {
+    const double width = 2 * (half_ + kToolSide), height = kToolHeight + kToolFoot + 2;
+    out_ = fmt::format(
+        "<svg viewBox='{:.2f} -1 {:.2f} {:.2f}' style='width:{:.2f}mm;height:{:.2f}mm' font-size='2.5' "
+        "font-family='sans-serif' role=img aria-label='tool {}'>",
+        -0.5 * width, width, height, width, height, tool_.number);
+    bodies();
+    words();
+    length();
+    out_ += fmt::format("<text x='0' y='{:.2f}' text-anchor='middle' font-weight='600'>T{}</text>", kToolHeight + 4,
+                        tool_.number);
+    out_ += fmt::format("<text x='0' y='{:.2f}' text-anchor='middle'>{}</text></svg>\n", kToolHeight + 7.5,
+                        tool_.diameter_mm > 0 ? fmt::format("\u00f8 {:g}", tool_.diameter_mm)
+                                              : fmt::format("module {:g}", tool_.module_mm));
+    return std::move(out_);
+  }
+
+ private:
+  [[nodiscard]] double y_of(double along) const { return kToolHeight - scale_ * along; }
+
+  void bodies() {
+    for (const auto& body : tool::outline_of(tool_)) {
+      const char* fill = tool::cuts(body.body) ? "#e8c66a" : body.body == tool::Body::shank ? "#bbb" : "#888";
+      std::string right, left;
+      for (const Vec2& p : body.line) {
+        right += fmt::format("{}{:.3f} {:.3f}", right.empty() ? "M" : "L", scale_ * p[1], y_of(p[0]));
+        left = fmt::format("L{:.3f} {:.3f}", -scale_ * p[1], y_of(p[0])) + left;
+      }
+      out_ += fmt::format("<path d='{}{}Z' fill='{}' stroke='#333' stroke-width='.15'/>", right, left, fill);
+    }
+  }
+  void line(double x1, double y1, double x2, double y2) {
+    out_ += fmt::format("<path d='M{:.2f} {:.2f}L{:.2f} {:.2f}' stroke='#777' stroke-width='.12' fill='none'/>", x1, y1,
+                        x2, y2);
+  }
+  /// Flutes and stick-out, each at its height above the tip; no word covers another.
+  void words() {
+    double free = kToolHeight;
+    const double x = half_ + 3;
+    for (const auto& [name, mm] : {std::pair{"flute", tool_.flute_length_mm}, {"out", tool_.stick_out_mm}}) {
+      const double y = std::min(y_of(mm), free);
+      free = y - kLeastWord;
+      line(0.5 * scale_ * tool_.shank_diameter_mm, y_of(mm), half_ + 1, y_of(mm));
+      line(half_ + 1, y_of(mm), x - 0.5, y);
+      out_ += fmt::format("<text x='{:.2f}' y='{:.2f}'>{} {:g}</text>", x, y + 0.9, name, mm);
+    }
+  }
+  void length() {
+    const double x = -half_ - 2, high = y_of(tool_.length_mm);
+    for (const double y : {kToolHeight, high}) line(x - 1, y, 0, y);
+    line(x, kToolHeight, x, high);
+    out_ += fmt::format("<text x='{:.2f}' y='{:.2f}' text-anchor='end'>{:g}</text>", x - 0.8,
+                        0.5 * (kToolHeight + high) + 0.9, tool_.length_mm);
+  }
+
+  const tool::ToolAssembly& tool_;
+  double top_ = 0, scale_ = 1, half_ = 0;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string tool_sketch(const tool::ToolAssembly& tool) { return ToolDrawing(tool).svg(); }
 
 }  // namespace toothpath::sheet

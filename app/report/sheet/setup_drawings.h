@@ -15,7 +15,8 @@ namespace toothpath::sheet {
 [[nodiscard]] std::string part_sketch(const joints::Setup& setup, const PartOutline& part,
                                       const machines::Machine& machine);
 
-/// Cutter, shank and holder from the side, tip at the bottom.
+/// Cutter, shank and holder from the side, tip at the bottom, with its number, diameter, flutes, stick-out and the
+/// length from the gauge line to the tip, mm.
 [[nodiscard]] std::string tool_sketch(const tool::ToolAssembly& tool);
 
 }  // namespace toothpath::sheet

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/report/sheet/part_swing.h"
 #include "app/report/sheet/restart_section.h"
@@ -18,15 +19,15 @@
 namespace toothpath::sheet {
 namespace {
 
-constexpr std::string_view kSetupStyle = R"(@page{size:A4;margin:14mm}
-body{font:10.5pt/1.35 sans-serif;color:#111;background:#fff;max-width:182mm;margin:6mm auto}
-h1{font-size:16pt;margin:0 0 1mm}h2{font-size:11.5pt;margin:4mm 0 1mm;border-bottom:.3mm solid #888;break-after:avoid}
-table{border-collapse:collapse;width:100%}th,td{border:.2mm solid #999;padding:.6mm 1.6mm;text-align:left;vertical-align:top}
+constexpr std::string_view kSetupStyle = R"(@page{size:A4;margin:11mm 14mm}
+body{font:9pt/1.25 sans-serif;color:#111;background:#fff;max-width:182mm;margin:6mm auto}
+h1{font-size:14pt;margin:0 0 1mm}h2{font-size:10.5pt;margin:2.5mm 0 .8mm;border-bottom:.3mm solid #888;break-after:avoid}
+table{border-collapse:collapse;width:100%}th,td{border:.2mm solid #999;padding:.4mm 1.3mm;text-align:left;vertical-align:top}
 th{background:#eee;font-weight:600}td.n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}td.w{overflow-wrap:anywhere}tr,svg{break-inside:avoid}
 .no{border:.8mm solid #b00;padding:2mm;color:#b00;font-weight:700}.yes{border:.4mm solid #070;padding:1.5mm}.part{border:.6mm solid #a60;padding:1.5mm;font-weight:600}
-.part ul{font-weight:400}.assumed{border:.5mm dashed #a60;padding:1.5mm}@media print{body{margin:0}}ul{margin:1mm 0;padding-left:5mm}svg{max-width:100%}
-.small{font-size:9pt;margin:1mm 0}.pairs{columns:6 26mm;column-gap:4mm;font-size:8.5pt;font-variant-numeric:tabular-nums}.pairs span{display:block}
-.wide{overflow-x:auto}@media screen and (max-width:700px){body{margin:3mm}td,th{padding:.6mm 1mm}.wide table{min-width:640px}.wide td:first-child{white-space:nowrap}}
+.part ul{font-weight:400}.assumed{border:.5mm dashed #a60;padding:1.5mm}@media print,(min-width:700px){.assumed ul{columns:2}}@media print{body{margin:0}}ul{margin:1mm 0;padding-left:5mm}svg{max-width:100%}
+.small{font-size:8pt;margin:.8mm 0}.tools{display:flex;flex-wrap:wrap;gap:1mm 3mm;align-items:flex-end}.tools svg{max-width:100%}.pairs{columns:6 26mm;column-gap:4mm;font-size:8.5pt;font-variant-numeric:tabular-nums}.pairs span{display:block}
+.wide{overflow-x:auto}@media screen{body{font-size:10.5pt;line-height:1.35}.small{font-size:9pt}}@media screen and (max-width:700px){body{margin:3mm}td,th{padding:.6mm 1mm}.wide table{min-width:640px}.wide td:first-child{white-space:nowrap}}
 @media print{.wide{overflow:visible}h2{break-after:avoid}thead{display:table-header-group}.appendix{break-before:page}}
 )";
 
@@ -94,8 +95,7 @@ void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part,
 
 /// The times of a tool stand where the operations tell them: not of a program that was only read.
 void tool_table(Sheet& sheet, const job::Job& job, const report::RunReport& report) {
-  std::vector<std::string> columns = {"T",        "cutter", "length mm: gauge line to tip", "stick-out mm", "flute mm",
-                                      "shank mm", "teeth"};
+  std::vector<std::string> columns = {"T", "cutter", "length mm", "stick-out mm", "flute mm", "shank mm", "teeth"};
   const bool timed = !report.operations.empty();
   if (timed) columns.insert(columns.end(), {"cutting", "rapids", "total"});
   sheet.begin_table(columns);
@@ -141,10 +141,10 @@ void tool_section(Sheet& sheet, const job::Job& job, const report::RunReport& re
   sheet.heading("Tools");
   tool_table(sheet, job, report);
   if (!report.operations.empty()) change_line(sheet, report);
-  sheet.raw("<p>");
+  sheet.raw("<div class=tools>");
   for (const auto& tool : job.tools)
-    if (tool.sister_of == 0) sheet.raw(fmt::format("T{} {} &nbsp; ", tool.number, tool_sketch(tool)));
-  sheet.raw("</p>\n");
+    if (tool.sister_of == 0) sheet.raw(tool_sketch(tool));
+  sheet.raw("</div>\n");
 }
 
 std::string microns(double mm) { return mm < 0.1 ? fmt::format("{:.2f} um", mm * 1000) : fmt::format("{:.3f} mm", mm); }
@@ -159,32 +159,32 @@ std::string flanks_alone(const report::LengthTolerance& t) {
 void length_section(Sheet& sheet, const report::RunReport& report) {
   if (report.length_tolerances.empty()) return;
   sheet.heading("Tool length: how exactly it must be set");
-  sheet.begin_table({"op", "T", "share of the error", "too long by at most", "too short by at most",
-                     "share on the flanks", "flanks alone: long, short"});
+  sheet.begin_table({"op", "T", "too long by at most", "too short by at most", "flanks alone: long, short",
+                     "share of the error", "share on the flanks"});
   for (const auto& t : report.length_tolerances)
-    sheet.row({std::to_string(t.operation), std::to_string(t.tool_number), fmt::format("{:.3f}", t.share),
-               microns(t.too_long_mm), t.too_short_mm ? microns(*t.too_short_mm) : "another operation finishes there",
-               fmt::format("{:.3f}", t.flank_share), flanks_alone(t)});
+    sheet.row({std::to_string(t.operation), std::to_string(t.tool_number), microns(t.too_long_mm),
+               t.too_short_mm ? microns(*t.too_short_mm) : "finished later", flanks_alone(t),
+               fmt::format("{:.3f}", t.share), fmt::format("{:.3f}", t.flank_share)});
   sheet.end_table();
   sheet.raw(
       "<p class=small>A length error d moves the cut surface by d (u &middot; n) along its normal n, u being the tool "
       "axis; the share is the largest |u &middot; n| on what the operation cuts. Too long: what is left of the gouge "
       "tolerance beyond the proven bound, and the stock that the operation leaves. Too short: what the scallop and "
-      "chord of the last operation allow beyond what is left. An error of the work offset along the tool axis adds to "
-      "it.</p>\n");
+      "chord of the last operation allow beyond what is left; \"finished later\" stands where another operation "
+      "finishes. An error of the work offset along the tool axis adds to it.</p>\n");
 }
 
-/// How the tool axis stands in an operation: with all its zones fixed, or turning in some.
+/// How the tool axis stands in an operation: fixed in all its zones, or with the leans of those in which it turns.
 std::string tilt_of(const report::RunReport& report, int operation) {
-  std::string text;
+  double least = INFINITY, greatest = -INFINITY;
   for (const auto& d : report.directions) {
     if (d.operation != operation || d.fixed) continue;
     if (d.passes == 0) return "simultaneous";
-    text += fmt::format("{}zone {}: SIMULTANEOUS, lean {:.1f} to {:.1f} deg, turns in {} of {} passes",
-                        text.empty() ? "" : "; ", d.zone, degrees(d.least_lean_rad), degrees(d.greatest_lean_rad),
-                        d.turning_passes, d.passes);
+    least = std::min(least, d.least_lean_rad);
+    greatest = std::max(greatest, d.greatest_lean_rad);
   }
-  return text.empty() ? "fixed" : text;
+  return least > greatest ? "fixed"
+                          : fmt::format("simultaneous, lean {:.1f} to {:.1f} deg", degrees(least), degrees(greatest));
 }
 
 void operation_section(Sheet& sheet, const report::RunReport& report) {
@@ -225,10 +225,13 @@ void axis_section(Sheet& sheet, const report::RunReport& report) {
 }
 
 void table_section(Sheet& sheet, const report::Section& section) {
+  if (section.sheet_rows == 0) return;
+  const std::size_t rows = std::min(section.rows.size(), section.sheet_rows), more = section.rows.size() - rows;
   sheet.heading(section.title);
   sheet.begin_table(section.columns);
-  for (const auto& row : section.rows) sheet.row(row);
+  for (std::size_t n = 0; n < rows; ++n) sheet.row(section.rows[n]);
   sheet.end_table();
+  if (more > 0) sheet.raw(fmt::format("<p class=small>{} more stand in report.html.</p>\n", more));
   if (!section.note.empty()) sheet.raw(fmt::format("<p class=small>{}</p>\n", svg::html_escape(section.note)));
 }
 

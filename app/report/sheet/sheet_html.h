@@ -20,7 +20,7 @@ class Sheet {
   /// A table of more than three columns may be shifted sideways where the screen is narrow.
   void begin_table(const std::vector<std::string>& columns) {
     out_ += columns.size() > 3 ? "<div class=wide><table><thead><tr>" : "<div><table><thead><tr>";
-    for (const auto& column : columns) out_ += fmt::format("<th>{}</th>", svg::html_escape(column));
+    for (const auto& column : columns) out_ += fmt::format("<th scope=col>{}</th>", svg::html_escape(column));
     out_ += "</tr></thead><tbody>\n";
   }
   /// Cells that begin with a digit or a minus sign are set to the right; long words (paths of files) may break.
