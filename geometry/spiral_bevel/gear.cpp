@@ -278,6 +278,7 @@ class Inspection : public Refusals {
   struct Climb {
     double end = 0, azimuth = 0;
     bool arrived = false;
+    Vec2 at = Vec2::Zero();  ///< where it ends
   };
   static Climb climb(const CutterSpace& space, std::size_t i, double s) {
     const CutterKernel& k = space.kernel();
@@ -299,6 +300,7 @@ class Inspection : public Refusals {
       at = *next;
       out.end = h;
     }
+    out.at = at;
     const auto q = space.at(piece, at.x(), at.y());
     out.azimuth = q ? azimuth(q->p) : 0;
     out.arrived = q.has_value();
@@ -310,8 +312,9 @@ class Inspection : public Refusals {
     const Climb own = climb(space, i, s), other = climb(space, 1 - i, s);
     const auto& outline = space.outline();
     if (own.arrived && other.arrived) {
-      const double turn = side_of(space.kernel(), i) > 0 ? own.azimuth - other.azimuth : other.azimuth - own.azimuth;
-      return pointed(s, outline.chart.r(s, space.tip(s)) * wrapped(turn + outline.pitch));
+      const double turn = side_of(space.kernel(), i) > 0 ? own.azimuth - other.azimuth : other.azimuth - own.azimuth,
+                   land = outline.chart.r(s, space.tip(s)) * wrapped(turn + outline.pitch);
+      return land > 0 ? edge_is_lost(space, i, s, own.at) : pointed(s, land);
     }
     const std::size_t ends = own.arrived ? 1 - i : i;
     const double end = (own.arrived ? other : own).end;
@@ -319,6 +322,41 @@ class Inspection : public Refusals {
     refuse("tip_angle",
            "tip_angle = {:.4f} deg: the {} flank ends {:.4f} mm below the face cone at cone distance {:.4f} mm",
            degrees(gear_.tip_angle_rad), ends == 0 ? "concave" : "convex", space.tip(s) - end, -s);
+  }
+  /// Both flanks are there at s and leave a land, but the edge of one cannot be followed over the whole face.
+  void edge_is_lost(const CutterSpace& space, std::size_t i, double s, const Vec2& edge) {
+    constexpr int kSteps = 256, kHalvings = 30;
+    constexpr double kSteep = 100;  // times as fast as the cone distance grows
+    const CutterKernel& k = space.kernel();
+    const Piece piece = tooth_space::flank_of(side_of(k, i));
+    double last = s;
+    Vec2 at = edge;
+    for (const double end : {-k.R_e, -k.R_i}) {
+      last = s;
+      at = edge;
+      double step = (end - s) / kSteps;
+      for (int halvings = 0; halvings < kHalvings && std::abs(end - last) > 1e-9;) {
+        const auto next = k.solve(piece, last + step, space.tip(last + step), at);
+        if (!next) {
+          step *= 0.5;
+          ++halvings;
+          continue;
+        }
+        at = *next;
+        last += step;
+      }
+      if (std::abs(end - last) > 1e-9) break;
+    }
+    const auto q = space.at(piece, at.x(), at.y());
+    const bool turns = !q || std::abs(space.outline().chart.along(q->p, q->pv)) > kSteep;
+    refuse(
+        "tip_angle",
+        "tip_angle = {:.4f} deg: the {} flank cannot be followed along the face cone beyond cone distance {:.4f} mm, "
+        "the face is {:.4f} to {:.4f} mm{}",
+        degrees(gear_.tip_angle_rad), i == 0 ? "concave" : "convex", -last, k.R_i, k.R_e,
+        turns ? ": its contact lines run along the circles of the blade there, so that the roll of the cradle, by "
+                "which it is followed, turns back"
+              : "");
   }
   void pointed(double s, double land) {
     refuse("tip_angle",

@@ -114,6 +114,18 @@ bool find_middle(CutFlank& f, const Chart& chart, double s_mean) {
   return true;
 }
 
+/// What solves a place at s_to, from what does at s_from: v grows about as s does. Where that start is too far off, in
+/// halves of the way.
+template <typename T, typename Solve>
+std::optional<T> followed(const T& from, double s_from, double s_to, const T& by_s, const Solve& solve,
+                          int halvings = 6) {
+  const auto there = solve(T(from + (s_to - s_from) * by_s), s_to);
+  if (there || halvings == 0 || s_to == s_from) return there;
+  const double middle = 0.5 * (s_from + s_to);
+  const auto half = followed<T>(from, s_from, middle, by_s, solve, halvings - 1);
+  return half ? followed<T>(*half, middle, s_to, by_s, solve, halvings - 1) : std::nullopt;
+}
+
 /// Along the face from its middle; not a number from where the flank ends.
 void lay_rails(CutterKernel& k, std::size_t flank) {
   constexpr std::size_t kMiddle = CutterKernel::kRails / 2;
@@ -125,22 +137,26 @@ void lay_rails(CutterKernel& k, std::size_t flank) {
   const Vec2 none(NAN, NAN);
   Vec2 tip = k.middle[flank];
   for (int n = 1; n <= kSteps; ++n) tip = k.solve(piece, s_mean, h_mean * n / kSteps, tip).value_or(none);
-  // From places near the fillet, half way and at the tip.
-  const auto lay = [&](std::size_t n, const std::array<double, 3>& near, const Vec2& edge) {
+  // From places near the fillet, half way and at the tip; in halves of the way where v turns quickly.
+  const auto lay = [&](std::size_t n, double s_near, const std::array<double, 3>& near, const Vec2& edge) {
     const double s = -k.R_e + step * double(n), u_F = k.flanks[flank].u_F;
-    const Vec2 at = k.solve(piece, s, k.tip<double>(s), edge).value_or(none);
+    const auto on_tip = [&](const Vec2& from, double to) { return k.solve(piece, to, k.tip<double>(to), from); };
+    const Vec2 at = followed<Vec2>(edge, s_near, s, Vec2(0, 1), on_tip).value_or(none);
+    const auto at_u = [&](double u, double from) {
+      const auto solve = [&](double v, double to) { return k.solve_v(piece, u, to, v); };
+      return followed<double>(from, s_near, s, 1.0, solve).value_or(NAN);
+    };
     CutterKernel::Rail& rail = rails[n];
     rail.u_tip = at.x();
-    rail.v = {k.solve_v(piece, u_F, s, near[0]).value_or(NAN),
-              k.solve_v(piece, 0.5 * (u_F + at.x()), s, near[1]).value_or(NAN), at.y()};
+    rail.v = {at_u(u_F, near[0]), at_u(0.5 * (u_F + at.x()), near[1]), at.y()};
   };
-  lay(kMiddle, {s_mean, k.middle[flank].y(), 0}, tip);
+  lay(kMiddle, s_mean, {s_mean, k.middle[flank].y(), 0}, tip);
   for (const int way : {-1, 1})
     for (std::size_t n = kMiddle; n != (way < 0 ? 0 : CutterKernel::kRails - 1);) {
       const CutterKernel::Rail& from = rails[n];
-      const double on = way * step;
+      const double s = -k.R_e + step * double(n);
       n = way < 0 ? n - 1 : n + 1;
-      lay(n, {from.v[0] + on, from.v[1] + on, 0}, {from.u_tip, from.v[2] + on});
+      lay(n, s, {from.v[0], from.v[1], 0}, {from.u_tip, from.v[2]});
     }
 }
 

@@ -33,9 +33,15 @@ TEST(BasicSettings, MakeWhatTheDrawingSays) {
   struct {
     int teeth, mate;
     double module, face, spiral, cutter, shafts = 90;
-  } pairs[] = {{12, 36, 5, 25, 35, 76.2},      {30, 30, 2, 12, 35, 31.75},    {25, 30, 3, 18, 35, 57.15},
-               {9, 37, 5, 28, 35, 95.25},      {17, 28, 4, 20, 35, 76.2, 60}, {16, 31, 4, 20, 35, 76.2, 110},
-               {20, 40, 3, 18, 30, 76.2, 75.5}};
+  } pairs[] = {{12, 36, 5, 25, 35, 76.2},
+               {30, 30, 2, 12, 35, 31.75},
+               {25, 30, 3, 18, 35, 57.15},
+               {9, 37, 5, 28, 35, 95.25},
+               {17, 28, 4, 20, 35, 76.2, 60},
+               {16, 31, 4, 20, 35, 76.2, 110},
+               {20, 40, 3, 18, 30, 76.2, 75.5},
+               // v runs three times as fast as the cone distance along the wheel's tip.
+               {17, 28, 5.5, 20, 35, 76.2, 110}};
   for (const auto& [teeth, mate, module, face, spiral, cutter, shafts] : pairs) {
     double spaces = 0, pitch = 0;
     for (const bool wheel : {false, true}) {
@@ -89,6 +95,30 @@ TEST(BasicSettings, ShaftsForAnInternalWheelAreRefusedWithTheirLimit) {
   d.shaft_angle_rad = radians(limit + 1e-3);
   EXPECT_FALSE(basic_settings(d, 0.5)) << text;
   EXPECT_FALSE(spiral_bevel::shaft_angle_of(radians(40), 2));
+}
+
+/// Where the roll turns back before the end of the face, that is what is told, not a pointed tooth: with the cone
+/// distance, which lies farther out the less the spiral angle is.
+TEST(BasicSettings, AFlankWhoseRollTurnsBackIsToldWithThePlace) {
+  double before = 0;
+  for (const double spiral : {28.0, 26.0}) {
+    Drawing d = drawing(17, 28, 5.5, 20, spiral, 76.2, true);
+    d.shaft_angle_rad = radians(110);
+    const auto settings = basic_settings(d, 0.5);
+    ASSERT_TRUE(settings);
+    const auto made = SpiralBevelGear::make(settings.value());
+    ASSERT_FALSE(made);
+    const std::string& text = made.error().front().diagnostic.message;
+    EXPECT_EQ(text.find("pointed"), std::string::npos) << text;
+    EXPECT_NE(text.find("turns back"), std::string::npos) << text;
+    EXPECT_NE(text.find("or less would do"), std::string::npos) << text;
+    const std::string lead = "beyond cone distance ";
+    ASSERT_NE(text.find(lead), std::string::npos) << text;
+    const double place = std::stod(text.substr(text.find(lead) + lead.size()));
+    EXPECT_GT(place, std::max(before, 60.0)) << text;
+    EXPECT_LT(place, 80) << text;
+    before = place;
+  }
 }
 
 }  // namespace
