@@ -336,7 +336,7 @@ class Fitting : public Refusals {
     const auto& ring = kernel.ring;
     for (int k = 0; k < kStations; ++k) {
       const double s = ring.s_from + (ring.s_to - ring.s_from) * k / (kStations - 1);
-      const std::string where = tooth_space::station(kernel.ring, s);
+      const std::string where = station(s, kernel.tip<double>(s));
       if (const double land = root_land_mm(space, s); !(land > 0))
         return refuse_ball(
             fmt::format("the ball is wider than the space at {}: the fillets overlap by {:.4f} mm", where, -land));
@@ -387,6 +387,15 @@ class Fitting : public Refusals {
     const GridPoints& g = gear_.points(side);
     if (!g.line.empty()) d.position = {gear_.file, g.line[g.index(row, column)], 1};
     add({"points", std::move(d)});
+  }
+  /// A station in words, and by how much it lies beyond an end that leans, at a height: teeth are planned longer.
+  [[nodiscard]] std::string station(double s, double h) const {
+    const auto& ring = kernel.ring;
+    const double beyond = std::max(ring.end(false).at(h) - s, s - ring.end(true).at(h));
+    return tooth_space::station(ring, s) +
+           (ring.leaning && beyond > 0
+                ? fmt::format(", {:.4f} mm beyond an end that leans: teeth are planned with square ends", beyond)
+                : std::string());
   }
   /// Highest place of a flank at s, as far as its points and what may go on beyond them reach; their top where it has
   /// none.
@@ -458,9 +467,9 @@ class Fitting : public Refusals {
       const Vec3 c = p + radius * n;
       if (kernel.root.height({toothpath::radius(c), c.z()}) < radius)
         return fmt::format("on flank {} at {} it touches the root before it touches the flank", side,
-                           tooth_space::station(kernel.ring, v));
+                           station(v, up(kernel.ring.chart, gear_.root.front())));
       return fmt::format("on flank {} at {} it does not reach the root down to half a height below the points", side,
-                         tooth_space::station(kernel.ring, v));
+                         station(v, up(kernel.ring.chart, gear_.root.front())));
     }
     using D = Dual<double, 2>;
     Vec3T<D> p, n;
@@ -652,7 +661,15 @@ class Fitting : public Refusals {
     }
   }
   void refuse_lost(int side, double s) {
-    if (refusals.empty()) refuse("points", "flank {} is not found at {}", side, tooth_space::station(kernel.ring, s));
+    const auto& ring = kernel.ring;
+    const auto [from, to] = ring.told(std::max(kernel.ball_plus.from(), kernel.ball_minus.from()),
+                                      std::min(kernel.ball_plus.to(), kernel.ball_minus.to()));
+    if (refusals.empty())
+      refuse("points",
+             "flank {} is not found over its whole height at {}: both balls roll along the teeth from {} {:.4f} to "
+             "{:.4f} mm only, limits of where flanks go on; columns that run farther along the teeth would help, or "
+             "a smaller fillet_radius",
+             side, tooth_space::station(ring, s), ring.along, from, to);
   }
   const FlankGridParameters& gear_;
   bool rises_ = true;  // root and tip run towards growing s

@@ -168,7 +168,8 @@ class Inspection : public Refusals {
         refuse_tip(
             s, land < 0
                    ? fmt::format("the tooth is pointed below the face cone, its top land is {:.4f} mm (limit 0)", land)
-                   : std::string("the flanks end below the face cone"));
+                   : fmt::format("the flanks end {:.4f} mm below the face cone (limit 0)",
+                                 space.tip(s) - top_of(space, s)));
       else
         refuse_tip(s, fmt::format("the top land is {:.4f} mm, the least is {:.4f} mm ({:g} modules)", land,
                                   least * share, gear_.least_land));
@@ -177,6 +178,18 @@ class Inspection : public Refusals {
   }
 
  private:
+  /// Highest place of a flank at s: the crown gear's flank ends a quarter turn beyond the pitch line of the octoid, or
+  /// beyond the base cone of the involute.
+  static double top_of(const CrownSpace& space, double s) {
+    constexpr int kSteps = 512;
+    const auto& w = space.kernel();
+    const double from = w.u_F, to = w.form == Form::octoid ? -kPi / 2 : kPi / 2;
+    double top = -INFINITY;
+    for (int k = 0; k <= kSteps; ++k)
+      if (const auto q = tooth_space::place_at(space, Piece::flank_minus, from + (to - from) * k / kSteps, s))
+        top = std::max(top, space.outline().chart.up(q->p));
+    return top;
+  }
   /// A face cone that the tooth does not reach, or the fillet passes: what states it there, and what would do.
   void refuse_tip(double s, const std::string& what) {
     const CrownKernel<double> w(gear_);

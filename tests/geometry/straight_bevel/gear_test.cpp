@@ -234,5 +234,24 @@ TEST(StraightBevel, AThicknessThatLeavesNoTipIsToldWithOneThatDoes) {
   EXPECT_FALSE(rounded(most + 2e-4));
 }
 
+/// A quarter turn beyond the pitch line the octoid's flank stands upright in the meridian, R / tan(alpha) above the
+/// pitch cone: a face cone that lies higher is refused by so much.
+TEST(StraightBevel, FlanksThatEndBelowTheFaceConeAreToldByHowMuch) {
+  auto g = khk_pinion();
+  g.pressure_angle_rad = radians(30);
+  g.fillet_radius_mm = 0.1;
+  g.dedendum_mm = 1;
+  g.addendum_mm = 72;
+  g.tip_angle_rad = g.pitch_angle_rad - radians(20);
+  const auto made = StraightBevelGear::make(g);
+  ASSERT_TRUE(made.refused());
+  const std::string message = made.refused()->front().diagnostic.message, before = "the flanks end ";
+  ASSERT_NE(message.find(before), std::string::npos) << message;
+  const double R_i = 0.5 * g.outer_transverse_module_mm * g.teeth / std::sin(g.pitch_angle_rad) - g.face_width_mm,
+               lack = 72 + g.face_width_mm * std::tan(radians(20)) - R_i / std::tan(radians(30));
+  EXPECT_GT(lack, 1);
+  EXPECT_NEAR(std::stod(message.substr(message.find(before) + before.size())), lack, 1e-4) << message;
+}
+
 }  // namespace
 }  // namespace toothpath::test
