@@ -112,6 +112,28 @@ Result<CutWalls> walls_as_measured(const bevel_gear::BevelGear& gear, const job:
   return out;
 }
 
+Result<process::CutFlanks> flanks_of(const bevel_gear::BevelGear& gear, const CutWalls& walls) {
+  constexpr int kRows = 21, kColumns = 25;
+  const auto places = inspection::bevel_inspection_grid(gear, {kRows, kColumns, 0});
+  if (!places) return places.error();
+  process::CutFlanks out;
+  out.route = walls.route;
+  out.warnings = walls.notes;
+  for (int half = 0; half < int(gear.halves().size()); ++half)
+    for (const int side : {1, -1}) {
+      process::CutFlanks::Flank flank{half, side, kRows, kColumns, {}, {}, {}};
+      for (const inspection::InspectionPoint& at : *places) {
+        if (at.zone != half || at.side != side) continue;
+        flank.nominal.push_back(at.p);
+        flank.normals.push_back(at.n);
+        flank.deviation_mm.push_back(
+            walls.left(half, side, bevel_gear::cone_point(at.p, gear.sin_delta(), gear.cos_delta())));
+      }
+      out.flanks.push_back(std::move(flank));
+    }
+  return out;
+}
+
 contact::BevelLeft left_on_pair(const CutWalls& walls, bool of_pinion) {
   return [left = walls.left, of_pinion](int half, int sigma, const bevel_gear::ConePoint& on_wheel,
                                         const bevel_gear::ConePoint& on_pinion) {

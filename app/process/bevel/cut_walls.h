@@ -28,6 +28,10 @@ struct CutWalls {
 /// The fit of measured grids (inspection.csv with a column deviation_um). Refused: as job::fit_measured.
 [[nodiscard]] Result<CutWalls> walls_as_measured(const bevel_gear::BevelGear& gear, const job::MeasuredInput& measured);
 
+/// The walls as flanks on grids up to their borders, as any two gears roll. Refused: as
+/// inspection::bevel_inspection_grid.
+[[nodiscard]] Result<process::CutFlanks> flanks_of(const bevel_gear::BevelGear& gear, const CutWalls& walls);
+
 /// What the pair meets of it: the mate is as drawn. Keeps a copy.
 [[nodiscard]] contact::BevelLeft left_on_pair(const CutWalls& walls, bool of_pinion);
 

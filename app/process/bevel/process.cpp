@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "app/process/bevel/contact.h"
+#include "app/process/bevel/cut_walls.h"
 #include "app/process/bevel/files.h"
 #include "app/process/bevel/ledger.h"
 #include "app/process/bevel/proof.h"
@@ -135,12 +136,12 @@ class BevelProcess : public milled::ToothedProcess {
         "no field of deviations; a [[gear.modification]] with a grid that is a sum over depth and face does",
         job().gear_type());
   }
-  [[nodiscard]] process::ValueOrErrors<process::CutFlanks> measured(const job::MeasuredInput&) const override {
-    return std::vector{
-        fail_at(job().where("gear.type"),
-                "type = \"{}\": measured walls roll with a mate of this type alone: leave out --measured, "
-                "or --mate",
-                job().gear_type())};
+  [[nodiscard]] process::ValueOrErrors<process::CutFlanks> measured(const job::MeasuredInput& files) const override {
+    const auto walls = walls_as_measured(bevel_, files);
+    if (!walls) return std::vector{walls.error()};
+    auto flanks = flanks_of(bevel_, *walls);
+    if (!flanks) return std::vector{flanks.error()};
+    return std::move(*flanks);
   }
   [[nodiscard]] std::unique_ptr<inspection::TouchedPart> touched() const override {
     return std::make_unique<inspection::TouchedBevelGear>(part_);
