@@ -42,8 +42,8 @@ struct Stations {
 
 /// Everything about one pass that its steps share.
 /// What would give a blocked pose its room.
-const char* remedy(Blocked::Need need) {
-  switch (need) {
+const char* remedy(const Blocked& blocked) {
+  switch (blocked.need) {
     case Blocked::Need::touch:
       return ": the space between the flanks, or the groove, is too narrow for this mill; a smaller diameter or "
              "half_angle";
@@ -51,7 +51,8 @@ const char* remedy(Blocked::Need need) {
       return ", the stock that stands there: it would rub; a smaller allowance, diameter or half_angle";
     case Blocked::Need::clearance: break;
   }
-  return " clearance; a thinner shank or holder, a larger stick_out, or another half_angle";
+  return blocked.body == "holder" ? " clearance; a thinner holder, a larger stick_out, or another half_angle"
+                                  : " clearance; a larger flute_length, a thinner shank, or another half_angle";
 }
 
 class PassPlanner {
@@ -347,7 +348,7 @@ class PassPlanner {
       if (const auto& b = blocked[k])
         return fail("zone {}: flank {:+d} at {}: the {} has a gap of {:.4f} mm to the {}, {:.4f} mm is the least{}",
                     fit_.flank().zone, fit_.flank().side, told(station(best_.first + k)), b->body, b->gap_mm, b->patch,
-                    b->least_mm, remedy(b->need));
+                    b->least_mm, remedy(*b));
     room(-1, best_.first, from_, s_from_);
     room(1, best_.last, to_, s_to_);
     return Ok{};

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <map>
@@ -291,6 +292,25 @@ TEST(LinePassShape, EndsWhereItIsNotClear) {
   EXPECT_LT(cut.records.back().s, whole.records.back().s - 0.1);
   EXPECT_GT(cut.shortened_mm, 0);
   EXPECT_EQ(whole.shortened_mm, 0);
+}
+
+// Full stations must be clear: what would give them room is told by the body that lacks it. A shank begins where the
+// flute ends, a holder at the stick-out.
+TEST(LinePassShape, RefusedRoomNamesWhatHelpsByTheBody) {
+  const auto& c = case_of("inner_plus");
+  const auto task = c.task();
+  for (const auto& [body, helps, not_this] :
+       {std::array{"shank", "a larger flute_length", "stick_out"}, {"holder", "a larger stick_out", "flute_length"}}) {
+    auto o = options_of(c);
+    o.room = [body = body](const line::AxisLine<double>&) {
+      return std::optional(line::Blocked{body, "tip", 0.046, 0.05});
+    };
+    const auto pass = line::plan_pass(line::LineFit(task, tapered(c.r_0), line::strips_of(task, 1)[0]), o, 100);
+    ASSERT_FALSE(pass);
+    const std::string& text = pass.error().message;
+    EXPECT_NE(text.find(helps), std::string::npos) << text;
+    EXPECT_EQ(text.find(not_this), std::string::npos) << text;
+  }
 }
 
 tool::Profile mill(double diameter, double half_angle_deg, double flute, double shank, double stick_out) {
