@@ -173,61 +173,8 @@ class Fitting : public Refusals {
       return refuse("tip",
                     "the tip lies {:.4f} mm nearer to the axis than the root, limit 0: internal gears are not there",
                     -std::min(first.x(), last.x()));
-    auto& ring = kernel.ring;
-    ring.chart.sine = std::abs(upwards.x()) < 1e-9 ? 0 : upwards.x();
-    ring.chart.cosine = std::abs(upwards.y()) < 1e-9 ? 0 : upwards.y();
-    if (ring.chart.sine == 0) {
-      // Teeth that look down stand on a cone that is nearly flat: a chart without sine is one of teeth that look up.
-      if (ring.chart.cosine < 0) ring.chart.sine = kNearlyFlat;
-      ring.chart.cosine = ring.chart.cosine > 0 ? 1 : -1;
-    }
-    if (ring.chart.cosine == 0) ring.chart.sine = 1;
-    const Chart& chart = ring.chart;
-    ring.pitch = kTwoPi / gear_.teeth;
-    kernel.radius_mm = gear_.fillet_radius_mm;
-    const auto in_chart = [&](const Vec2& rz) { return Vec2(along(chart, rz), up(chart, rz)); };
-    const Vec2 low[] = {in_chart(gear_.root.front()), in_chart(gear_.root.back())},
-               high[] = {in_chart(gear_.tip.front()), in_chart(gear_.tip.back())};
-    rises_ = low[1].x() + high[1].x() > low[0].x() + high[0].x();
-    std::array<tooth_space::EndLine, 2> ends;
-    for (const std::size_t k : {0U, 1U}) {
-      const std::size_t n = rises_ ? k : 1 - k;
-      const Vec2 middle = 0.5 * (low[n] + high[n]), way = high[n] - low[n];
-      ends[k] = {middle.x(), middle.y(), way.x() / way.y()};
-    }
-    ring.s_from = ends[0].s;
-    ring.s_to = ends[1].s;
-    if (2 * std::max(off(first), off(last)) > kEndsOff) {
-      // The engine's ends lie farther out than either end at any height, down to where the body's front begins.
-      ring.leaning = ends;
-      const double module = 2 * std::max(gear_.tip.front().x(), gear_.tip.back().x()) / gear_.teeth,
-                   deepest = std::min(low[0].y(), low[1].y()) - module, highest = std::max(high[0].y(), high[1].y());
-      for (const double h : {deepest, highest}) {
-        if (!(ends[1].at(h) - ends[0].at(h) > kLeastFace))
-          return refuse("tip",
-                        "the ends of the teeth lean to one another so much that they meet before {}: longer teeth, or "
-                        "ends that lean less",
-                        h == deepest ? "a module below the root" : "the tip");
-        ring.s_from = std::min(ring.s_from, ends[0].at(h));
-        ring.s_to = std::max(ring.s_to, ends[1].at(h));
-      }
-    }
-    if (!(ring.s_to - ring.s_from > kLeastFace))
-      return refuse("root", "the teeth are {:.6g} mm long, {} mm at least are needed", ring.s_to - ring.s_from,
-                    kLeastFace);
-    ring.from = rises_ ? "first" : "last";
-    ring.to = rises_ ? "last" : "first";
-    name_stations(ring);
-    const Vec2 way = (gear_.root.back() - gear_.root.front()).normalized();
-    kernel.root.start = gear_.root.front();
-    kernel.root.along = way;
-    kernel.root.normal = Vec2(-way.y(), way.x());
-    if (kernel.root.normal.dot(upwards) < 0) kernel.root.normal = -kernel.root.normal;
-    const auto on_root = [&](const Vec2& rz) { return kernel.root.local(rz); };
-    if (auto line = rounded("root", gear_.root, on_root, kRollRoom * kernel.radius_mm)) kernel.root.bent = *line;
-    std::vector<Vec2> tip = gear_.tip;
-    if (!rises_) std::reverse(tip.begin(), tip.end());
-    if (auto line = rounded("tip", tip, in_chart, 0)) kernel.tip_line = *line;
+    stand(upwards);
+    if (ends(2 * std::max(off(first), off(last)) > kEndsOff)) lines(upwards);
   }
 
   void flank(int side) {
@@ -380,6 +327,78 @@ class Fitting : public Refusals {
   }
 
  private:
+  /// The chart halves the angle between the ends.
+  void stand(const Vec2& upwards) {
+    auto& ring = kernel.ring;
+    ring.chart.sine = std::abs(upwards.x()) < 1e-9 ? 0 : upwards.x();
+    ring.chart.cosine = std::abs(upwards.y()) < 1e-9 ? 0 : upwards.y();
+    if (ring.chart.sine == 0) {
+      // Teeth that look down stand on a cone that is nearly flat: a chart without sine is one of teeth that look up.
+      if (ring.chart.cosine < 0) ring.chart.sine = kNearlyFlat;
+      ring.chart.cosine = ring.chart.cosine > 0 ? 1 : -1;
+    }
+    if (ring.chart.cosine == 0) ring.chart.sine = 1;
+  }
+  /// Where the teeth end. False: refused.
+  bool ends(bool lean) {
+    auto& ring = kernel.ring;
+    const Chart& chart = ring.chart;
+    ring.pitch = kTwoPi / gear_.teeth;
+    kernel.radius_mm = gear_.fillet_radius_mm;
+    const auto in_chart = [&](const Vec2& rz) { return Vec2(along(chart, rz), up(chart, rz)); };
+    const Vec2 low[] = {in_chart(gear_.root.front()), in_chart(gear_.root.back())},
+               high[] = {in_chart(gear_.tip.front()), in_chart(gear_.tip.back())};
+    rises_ = low[1].x() + high[1].x() > low[0].x() + high[0].x();
+    std::array<tooth_space::EndLine, 2> made;
+    for (const std::size_t k : {0U, 1U}) {
+      const std::size_t n = rises_ ? k : 1 - k;
+      const Vec2 middle = 0.5 * (low[n] + high[n]), way = high[n] - low[n];
+      made[k] = {middle.x(), middle.y(), way.x() / way.y()};
+    }
+    ring.s_from = made[0].s;
+    ring.s_to = made[1].s;
+    if (lean) {
+      // The engine's ends lie farther out than either end at any height, down to where the body's front begins.
+      ring.leaning = made;
+      const double module = 2 * std::max(gear_.tip.front().x(), gear_.tip.back().x()) / gear_.teeth,
+                   deepest = std::min(low[0].y(), low[1].y()) - module, highest = std::max(high[0].y(), high[1].y());
+      for (const double h : {deepest, highest}) {
+        if (!(made[1].at(h) - made[0].at(h) > kLeastFace)) {
+          refuse(
+              "tip",
+              "the ends of the teeth lean to one another so much that they meet before {}: longer teeth, or ends that "
+              "lean less",
+              h == deepest ? "a module below the root" : "the tip");
+          return false;
+        }
+        ring.s_from = std::min(ring.s_from, made[0].at(h));
+        ring.s_to = std::max(ring.s_to, made[1].at(h));
+      }
+    }
+    if (!(ring.s_to - ring.s_from > kLeastFace)) {
+      refuse("root", "the teeth are {:.6g} mm long, {} mm at least are needed", ring.s_to - ring.s_from, kLeastFace);
+      return false;
+    }
+    ring.from = rises_ ? "first" : "last";
+    ring.to = rises_ ? "last" : "first";
+    name_stations(ring);
+    return true;
+  }
+  /// Root and tip.
+  void lines(const Vec2& upwards) {
+    const Vec2 way = (gear_.root.back() - gear_.root.front()).normalized();
+    kernel.root.start = gear_.root.front();
+    kernel.root.along = way;
+    kernel.root.normal = Vec2(-way.y(), way.x());
+    if (kernel.root.normal.dot(upwards) < 0) kernel.root.normal = -kernel.root.normal;
+    const Chart& chart = kernel.ring.chart;
+    const auto in_chart = [&](const Vec2& rz) { return Vec2(along(chart, rz), up(chart, rz)); };
+    const auto on_root = [&](const Vec2& rz) { return kernel.root.local(rz); };
+    if (auto line = rounded("root", gear_.root, on_root, kRollRoom * kernel.radius_mm)) kernel.root.bent = *line;
+    std::vector<Vec2> tip = gear_.tip;
+    if (!rises_) std::reverse(tip.begin(), tip.end());
+    if (auto line = rounded("tip", tip, in_chart, 0)) kernel.tip_line = *line;
+  }
   template <typename... Args>
   void refuse_point(int side, int row, int column, fmt::format_string<Args...> text, Args&&... args) {
     Diagnostic d =
