@@ -221,6 +221,7 @@ Expected<MadeJob, std::vector<Diagnostic>> make_job(const NewRequest& request, C
   if (proof.exit_code != app::ExitCode::ok && proof.exit_code != app::ExitCode::unverified)
     return without_places(std::move(proof.errors));
   proposal::Told limits = choice.notes;
+  if (choice.machine.assumed) limits.emplace_back("assumed in the machine file", assumed_words(choice.machine));
   for (const auto& more : {limits_of(choice.wishes), limits_of(choice.gear),
                            limits_of(proposed.value().draft, choice.machine, choice.gear)})
     limits.insert(limits.end(), more.begin(), more.end());
@@ -338,6 +339,17 @@ void new_options(OptionSet& set, NewRequest& request) {
   set.word("--gear", request.gear, "kind of gear", "KIND", proposal::gear_words());
   set.word("--cut", request.route, "how it is cut; bevel_herringbone: finger", "WAY", proposal::route_words());
   set.text("--machine", request.machine, "a machine file, or the name of an installed machine", "NAME");
+  set.word("--accept-assumed", request.accept_assumed,
+           "assumed values of the machine file are taken; asked for on a terminal, else yes", "ANSWER",
+           questions::kYesNo);
+  set.whole_number("--class", request.iso_class, "quality of the flanks by ISO 1328-1: tolerances follow",
+                   proposal::kIsoClass);
+  set.number("--tolerance", request.tolerance_um, "the same by the tolerance of their form (default 10)",
+             proposal::kTolerance);
+  set.word("--coolant", request.coolant, "as far as the control has it", "WAY", questions::kCoolantWords);
+  set.number("--blank-top", request.blank_top_mm,
+             "height of the blank's top above the face of the table (default: where the travels have most room)",
+             questions::kBlankTop);
   set.text("--tools", request.tools,
            "tools instead of standard sizes: those of a job, or of a tool library of LinuxCNC, Fusion or FreeCAD",
            "FILE");

@@ -18,6 +18,15 @@ constexpr std::pair<std::string_view, std::string_view> kExplanations[] = {
     {"--machine",
      "The file says axes, travels, pivots and control. `toothpath machine list` shows those that come with Toothpath; "
      "yours is copied from the one that is most like it (docs/machine_reference.md)"},
+    {"--accept-assumed",
+     "Pivots and travels that nobody measured may be wrong. The pages list them; `toothpath machine test` writes a "
+     "program that proves them in air"},
+    {"--tolerance",
+     "How far the flank may be off its form, all causes together. The program takes up to three quarters of it; "
+     "class A "
+     "of ISO 1328-1 allows (0.55 m + 5) sqrt(2)^(A - 5) um"},
+    {"--coolant", "What the control can switch on, by its machine file"},
+    {"--blank-top", "Fixture and blank together. Where you are free, \"any\" leaves the most room in the travels"},
     {"--teeth", "Of the gear that is cut here, not of its mate"},
     {"--mate-teeth", "Of the gear that it runs with: with the teeth of this one it gives the pitch cones"},
     {"--shaper-teeth",

@@ -85,6 +85,7 @@ cylindrical::CylindricalParameters cylindrical_parameters(const Wishes& wishes) 
                groove = 0.5 * kGrooveModules * p.module_mm;
   if (wishes.gear == Gear::cylindrical_double_helical) p.zones = {{-helix, -half, -groove}, {helix, groove, half}};
   else p.zones = {{helix, -half, half}};
+  p.bore_diameter_mm = wishes.at(Quantity::bore);
   return p;
 }
 
@@ -99,6 +100,7 @@ straight_bevel::StraightBevelParameters straight_bevel_parameters(const Wishes& 
   p.pitch_angle_rad = std::atan2(z, mate);
   p.outer_transverse_module_mm = m;
   p.pressure_angle_rad = radians(wishes.at(Quantity::pressure_angle));
+  p.bore_diameter_mm = wishes.at(Quantity::bore);
   p.face_width_mm = wishes.at(Quantity::face_width);
   p.addendum_mm = rounded(z <= mate ? 2 * m - of_wheel : of_wheel);
   p.dedendum_mm = rounded(2 * m + clearance - p.addendum_mm);

@@ -101,6 +101,7 @@ std::string straight_bevel_text(const Wishes& wishes) {
   text += line("dedendum", real(p.dedendum_mm));
   text += line("tip_angle", real(std::round(1e4 * degrees(*p.tip_angle_rad)) / 1e4), "of the face cone");
   text += line("thickness_shift", real(p.thickness_shift), "half of the tooth's excess, in modules");
+  if (p.bore_diameter_mm > 0) text += line("bore_diameter", real(p.bore_diameter_mm));
   text += line("fillet_radius", real(p.fillet_radius_mm), "rounding of the crown gear's teeth: the fillet");
   text += line("backlash", "0.0", "of the pair, on the outer pitch circle");
   return text;
@@ -293,8 +294,36 @@ class Operations {
   std::string text_;
 };
 
+/// Of the operations, mm.
+struct Tolerances {
+  explicit Tolerances(const Draft& draft)
+      : total(tolerance_mm(draft.wishes.quality, draft.wishes.at(Quantity::module))),
+        widened(draft.coarse && !draft.wishes.quality.said()),
+        gouge(share_mm(widened ? 0.5 : kGougeShare, total)),
+        scallop(share_mm(widened ? 0.8 : kScallopShare, total)),
+        left(share_mm(widened ? 0.8 : kLeftShare, total)),
+        chord(share_mm(kChordShare, total)) {}
+  /// Of an operation that leaves stock: so many T, and no more than its stock bears.
+  [[nodiscard]] double ahead(double share, double allowance) const {
+    return std::min(share_mm(share, total), std::max(share * kUsualTolerance / 1000, 0.6 * allowance));
+  }
+
+  double total;
+  bool widened;
+  double gouge, scallop, left, chord;
+};
+
+/// What finishing takes of the tolerance.
+std::vector<std::pair<const char*, double>> shares_of(Route route) {
+  if (route == Route::finger) return {{"gouge_tolerance", kGougeShare}, {"chord_tolerance", kFingerChordShare}};
+  return {{"gouge_tolerance", kGougeShare},
+          route == Route::line ? std::pair("left", kLeftShare) : std::pair("scallop", kScallopShare),
+          {"chord_tolerance", kChordShare}};
+}
+
 std::string face_operations(const Draft& draft) {
   Operations all(draft);
+  const Tolerances t(draft);
   const double m = draft.wishes.at(Quantity::module);
   if (draft.has_first) all.rough(draft.first, 0.1 * m, "in layers");
   all.rough(draft.second, 0.07 * m,
@@ -304,27 +333,27 @@ std::string face_operations(const Draft& draft) {
     for (const double share : {0.03, 0.01}) {
       all.begin("line_milling", draft.second, D, share > 0.02 ? "every flank in one pass along the tooth" : "");
       all.add("allowance", share * m);
-      all.add("left", 0.008, "largest misfit of the straight side");
+      all.add("left", t.ahead(0.8, share * m), "largest misfit of the straight side");
     }
     all.begin("semi_finishing", draft.second, D);
     all.add("regions", "[\"fillet\", \"root\"]");
-    all.add("scallop", 0.02);
+    all.add("scallop", t.ahead(2, 0.01 * m));
     all.add("allowance", 0.01 * m);
     all.begin("line_milling", draft.second, D, "without allowance it finishes");
-    all.add("left", draft.coarse ? 0.008 : 0.005);
-    all.add("chord_tolerance", 0.0008);
+    all.add("left", t.left);
+    all.add("chord_tolerance", t.chord);
     all.begin("finishing", draft.second, D);
     all.add("regions", "[\"fillet\", \"root\"]");
-    all.add("scallop", 0.01, "highest cusp between passes");
-    all.add("chord_tolerance", 0.0008);
+    all.add("scallop", share_mm(1, t.total), "highest cusp between passes");
+    all.add("chord_tolerance", t.chord);
     return all.text();
   }
   all.begin("semi_finishing", draft.second, D);
-  all.add("scallop", 0.01, "highest cusp between passes");
+  all.add("scallop", t.ahead(1, 0.015 * m), "highest cusp between passes");
   all.add("allowance", 0.015 * m);
   all.begin("finishing", draft.second, D);
-  all.add("scallop", draft.coarse ? 0.008 : 0.004);
-  all.add("chord_tolerance", 0.0008, "largest sag of a straight block");
+  all.add("scallop", t.scallop);
+  all.add("chord_tolerance", t.chord, "largest sag of a straight block");
   return all.text();
 }
 
@@ -334,14 +363,17 @@ std::string finger_operations(const Draft& draft) {
   all.begin("finger_roughing", draft.second, wide);
   all.add("ridge", 0.05 * draft.wishes.at(Quantity::module), "highest ridge left on the root between passes");
   all.begin("finger_finishing", draft.second, wide);
-  all.add("chord_tolerance", 0.0005, "largest sag of a straight block");
+  all.add("chord_tolerance", share_mm(kFingerChordShare, Tolerances(draft).total), "largest sag of a straight block");
   return all.text();
 }
 
 std::string machine_table(const Draft& draft) {
   std::string text = "\n[machine]\n" + line("file", toml::quoted(draft.wishes.machine),
                                             "looked up beside this job, then among the installed machines");
-  if (draft.assumed) text += line("accept_assumed", "true", "values of it are assumed: every page says so");
+  if (draft.assumed) {
+    text += line("accept_assumed", "true", "values of it are assumed: every page says so");
+    text += "# " + draft.assumed_words + "\n";
+  }
   return text;
 }
 
@@ -378,15 +410,22 @@ std::string job_text(const Draft& draft, const LibraryWords& library, const std:
                : is_cylindrical(draft.wishes.gear) ? "the machine lays the axis down: the tool comes in radially"
                                                    : "teeth towards the spindle");
   text += line("work_offset", toml::quoted(draft.work_offset), "the program counts from it");
-  text += line("work_offset_at", vector_text(draft.place.origin_mm));
+  text += line("work_offset_at", vector_text(draft.work_zero_mm),
+               draft.zero_on_top ? "on the gear axis; Z 0 is the top of the blank" : "the origin of the gear");
+  if (!draft.wishes.coolant.empty()) text += "\n[coolant]\n" + line("mode", toml::quoted(draft.wishes.coolant));
   const auto tool = [&](const tool::ToolAssembly& t) {
     return library.file.empty() ? tool_text(t, draft.depth_mm) : library_tool_text(t, library);
   };
   if (draft.has_first) text += tool(draft.first);
   text += tool(draft.second);
   text += finger ? finger_operations(draft) : face_operations(draft);
+  const Tolerances tolerance(draft);
   return text + "\n[verify]\n" +
-         line("gouge_tolerance", draft.coarse ? "0.005" : "0.002", "a program that may cut deeper is not written") +
+         derivation(draft.wishes.quality, draft.wishes.at(Quantity::module), is_cylindrical(draft.wishes.gear),
+                    shares_of(*draft.wishes.route)) +
+         (tolerance.widened ? "# This control counts coarsely: gouge_tolerance, scallop and left are wider than that.\n"
+                            : "") +
+         line("gouge_tolerance", real(tolerance.gouge), "a program that may cut deeper is not written") +
          line("teeth", "\"one\"", "or \"all\": every tooth space is walked through");
 }
 

@@ -16,12 +16,15 @@ struct Draft {
   std::string name;
   Wishes wishes;  ///< whole
   double spindle_rpm = 0, most_feed_mm_min = 0;
-  bool assumed = false;  ///< values of the machine are
+  bool assumed = false;       ///< values of the machine are
+  std::string assumed_words;  ///< which of them
   std::string work_offset;
   Place place;
+  Vec3 work_zero_mm = Vec3::Zero();  ///< of the work offset, machine coordinates
+  bool zero_on_top = false;          ///< it is the top of the blank; else the origin of the gear
   tool::ToolAssembly first, second;  ///< roughing ball and finishing mill, numbered; a finger mill is `second`
   bool has_first = false;
-  bool coarse = false;  ///< wider tolerances and slower: for controls that count coarsely
+  bool coarse = false;  ///< slower, and wider tolerances where nobody asked for one: for controls that count coarsely
   double depth_mm = 0;
   bool up = true;  ///< z of the gear along that of the machine
 };

@@ -123,16 +123,26 @@ std::vector<ToolPlace> meridian_places(const Vec2& from, const Vec2& to, const V
   return places;
 }
 
+std::optional<double> table_top_mm(const machines::Machine& machine) {
+  const Vec3 plate = turns_the_work(machine.chain) ? machine.table_middle_mm() : Vec3::Zero();
+  auto top = machine.top_under(Vec3(plate.x(), plate.y(), INFINITY));
+  if (machine.table_face_mm) top = std::max(top.value_or(*machine.table_face_mm), *machine.table_face_mm);
+  return top;
+}
+
 std::optional<Place> place_of(const machines::Machine& machine, const PartInSpace& part, double tool_length_mm) {
   const machines::KinematicChain& chain = machine.chain;
   const bool on_axis = turns_the_work(chain);
   const Vec3 plate = on_axis ? machine.table_middle_mm() : Vec3::Zero();
   const double below = part.up ? -part.z_min_mm : part.z_max_mm;  // of the origin, to the underside
-  auto top = machine.top_under(Vec3(plate.x(), plate.y(), INFINITY));
-  if (machine.table_face_mm) top = std::max(top.value_or(*machine.table_face_mm), *machine.table_face_mm);
-  const double on_table = top.value_or(plate.z()) + kFixture + below,
-               lowest = on_table + rise_off_bodies(machine, part, {plate.x(), plate.y(), on_table}, tool_length_mm);
-  Vec3 origin(plate.x(), plate.y(), std::round(lowest));
+  const auto top = table_top_mm(machine);
+  const bool clamped = part.top_above_table_mm && top;
+  const double on_table = clamped ? *top + *part.top_above_table_mm - part.top_mm()
+                                  : top.value_or(plate.z()) + kFixture + below,
+               lowest = clamped ? on_table
+                                : on_table +
+                                      rise_off_bodies(machine, part, {plate.x(), plate.y(), on_table}, tool_length_mm);
+  Vec3 origin(plate.x(), plate.y(), clamped ? lowest : std::round(lowest));
 
   choice::TravelPoses poses(chain, machine.limit_margin,
                             on_axis ? std::optional(chain.table.front().direction) : std::nullopt);
@@ -148,7 +158,8 @@ std::optional<Place> place_of(const machines::Machine& machine, const PartInSpac
   if (const auto offer = poses.best()) {
     Vec3 shift = offer->shift_mm;
     for (int i = 0; i < 3; ++i) shift[i] = std::round(shift[i]);
-    if (top) shift.z() = std::max(shift.z(), std::ceil(lowest - origin.z()));
+    if (clamped) shift.z() = 0;
+    else if (top) shift.z() = std::max(shift.z(), std::ceil(lowest - origin.z()));
     result.origin_mm += shift;
     result.room_mm = poses.room(shift);
   }

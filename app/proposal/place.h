@@ -21,7 +21,16 @@ struct PartInSpace {
   bool up = true;                                    ///< z of the gear along that of the machine; else turned about X
   std::vector<ToolPlace> places;                     ///< of one tooth space: the others are turned copies
   int teeth = 1;
+  bool has_top = true;                            ///< its highest place is that of the blank, not a bound
+  std::optional<double> top_above_table_mm = {};  ///< where the shop clamps it; nothing: where there is most room
+
+  /// Of the blank, from the origin of the gear along the machine's Z, rotaries at zero.
+  [[nodiscard]] double top_mm() const { return up ? z_max_mm : -z_min_mm; }
 };
+
+/// Z of the face of the table, or of the highest body on it, under the work; machine coordinates. Nothing: the machine
+/// file says neither.
+[[nodiscard]] std::optional<double> table_top_mm(const machines::Machine& machine);
 
 struct Place {
   Vec3 origin_mm = Vec3::Zero();
@@ -30,7 +39,8 @@ struct Place {
 };
 
 /// The place with the most room in the travels: on the axis of the table that carries the work, where there is one, and
-/// clear of its plate. Nothing: the machine reaches no place of the tool.
+/// clear of its plate; or as high as its shop clamps it (then table_top_mm() is known). Nothing: the machine reaches no
+/// place of the tool.
 /// @param tool_length_mm  gauge point to tip
 [[nodiscard]] std::optional<Place> place_of(const machines::Machine& machine, const PartInSpace& part,
                                             double tool_length_mm);

@@ -15,6 +15,7 @@
 #include "machines/shaper_machine.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/shaper/control.h"
+#include "postproc/text/dialect.h"
 
 namespace toothpath::proposal {
 namespace {
@@ -227,17 +228,23 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_bevel(const Wishes& wishes)
                  R * c + 3 * p.dedendum_mm,
                  false,
                  finger_places(gear.R_i(), R, p.pitch_angle_rad, p.dedendum_mm),
-                 p.teeth};
+                 p.teeth,
+                 false};
   return chosen;
 }
 
 Result<Draft> with_place(Draft draft, const ChosenMachine& machine, const ChosenGear& gear) {
   const double length = std::max(draft.second.length_mm, draft.has_first ? draft.first.length_mm : 0.0);
-  const auto place = place_of(*machine.mill, gear.part, length);
+  PartInSpace part = gear.part;
+  part.top_above_table_mm = draft.wishes.blank_top_mm;
+  const auto place = place_of(*machine.mill, part, length);
   if (!place)
     return fail_as(DiagnosticKind::refused_input, "--machine: {} reaches no place of the tool on this gear",
                    machine.name);
   draft.place = *place;
+  draft.work_zero_mm = place->origin_mm;
+  draft.zero_on_top = part.has_top;
+  if (part.has_top) draft.work_zero_mm.z() += part.top_mm();
   std::string lacking;
   for (std::size_t i = 0; i < 3; ++i)
     if (place->room_mm[i] < 0)
@@ -293,17 +300,14 @@ Result<Draft> face_draft(Draft draft, const ChosenMachine& machine, const Chosen
   const auto type =
       draft.wishes.route == Route::line ? tool::CutterType::tapered_ball_end_mill : tool::CutterType::ball_end_mill;
   const tool::ToolAssembly* mill = largest(shelf, type, gear.facts.most_finishing_mm(), depth, attempt % 2);
-  if (!mill)
+  if (!mill) {
+    const BallLimit limit = ball_limit(gear);
     return fail_as(DiagnosticKind::refused_input,
-                   "{}: the largest ball that reaches all of the fillets and the root has {:.3f} mm, and no {} "
-                   "is so small and reaches down {:.2f} mm; {} takes a larger ball",
-                   gear.face            ? "--tip-radius"
-                   : gear.module_mm > 0 ? "--tools"
-                                        : "--module",
-                   gear.facts.largest_ball, draft.wishes.route == Route::line ? "tapered mill" : "ball mill", depth,
-                   gear.face            ? "a larger rounding of the shaper's tip"
-                   : gear.module_mm > 0 ? "a larger fillet"
-                                        : "a larger module");
+                   "{}: the largest ball that reaches all of the fillets and the root has {:.3f} mm, and no {} is so "
+                   "small and reaches down {:.2f} mm; {} takes a larger ball",
+                   limit.option, gear.facts.largest_ball,
+                   draft.wishes.route == Route::line ? "tapered mill" : "ball mill", depth, limit.larger);
+  }
   draft.second = *mill;
   draft.depth_mm = depth;
   const tool::ToolAssembly* first =
@@ -335,6 +339,7 @@ Expected<ChosenMachine, std::vector<Diagnostic>> choose_machine(const Wishes& wi
     if (!reading.machine) return std::move(reading.errors);
     chosen.name = reading.machine->name;
     chosen.assumed = reading.machine->assumed;
+    chosen.assumed_keys = reading.machine->assumed_keys;
     return chosen;
   }
   auto reading = controls::read_machine_of_text(file->text, *path);
@@ -342,6 +347,11 @@ Expected<ChosenMachine, std::vector<Diagnostic>> choose_machine(const Wishes& wi
   chosen.mill = std::move(reading.machine);
   chosen.name = chosen.mill->name;
   chosen.assumed = chosen.mill->assumed;
+  chosen.assumed_keys = chosen.mill->assumed_keys;
+  chosen.table_top_mm = table_top_mm(*chosen.mill);
+  if (const auto dialect = controls::dialect_of(*chosen.mill))
+    for (const machines::Coolant coolant : machines::kCoolants)
+      if (text::coolant_words(*dialect, coolant)) chosen.coolants.push_back(coolant);
   for (const char* name : {"G54", "1"})
     if (chosen.work_offset.empty() && !controls::other_work_offsets(*chosen.mill, name)) chosen.work_offset = name;
   return chosen;
@@ -355,6 +365,11 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_gear(const Wishes& wishes) 
   return wishes.gear == Gear::bevel_herringbone ? choose_bevel(wishes) : choose_face(wishes);
 }
 
+BallLimit ball_limit(const ChosenGear& gear) {
+  if (gear.face) return {"--tip-radius", "a larger rounding of the shaper's tip"};
+  return gear.module_mm > 0 ? BallLimit{"--tools", "a larger fillet"} : BallLimit{"--module", "a larger module"};
+}
+
 Result<Draft> draft_of(const std::string& name, const Wishes& wishes, const ChosenMachine& machine,
                        const ChosenGear& gear, const Shelf& shelf, int attempt) {
   Draft draft;
@@ -364,6 +379,7 @@ Result<Draft> draft_of(const std::string& name, const Wishes& wishes, const Chos
   if (gear.spiral) draft.wishes.spiral = gear.spiral;
   draft.up = gear.part.up;
   draft.assumed = machine.assumed;
+  draft.assumed_words = assumed_words(machine);
   draft.work_offset = machine.work_offset;
   if (wishes.route == Route::shaped) return draft;
   if (const Status fits = check_swing(machine, gear.diameter_mm); !fits) return fits.error();
@@ -428,6 +444,14 @@ Told limits_of(const Wishes& wishes) {
                {"outer end (land of a fifth of a module)", "up to " + mm(range->outer)}};
   if (range->pointing > 0) told.emplace_back("the teeth are pointed at", mm(range->pointing));
   return told;
+}
+
+std::string assumed_words(const ChosenMachine& machine) {
+  constexpr std::size_t kShown = 6;
+  const std::size_t count = machine.assumed_keys.size(), shown = std::min(count, kShown);
+  return fmt::format(
+      "{}{}", fmt::join(machine.assumed_keys.begin(), machine.assumed_keys.begin() + std::ptrdiff_t(shown), ", "),
+      count > shown ? fmt::format(" and {} more", count - shown) : std::string());
 }
 
 Told limits_of(const ChosenMachine& machine) {

@@ -9,6 +9,7 @@
 #include "app/proposal/gear_limits.h"
 #include "app/proposal/job_text.h"
 #include "geometry/bevel_gear/finger_cutter_design.h"
+#include "machines/coolant.h"
 
 namespace toothpath::proposal {
 
@@ -17,7 +18,10 @@ struct ChosenMachine {
   std::string name, file;
   std::optional<machines::Machine> mill;  ///< nothing: a gear shaper
   bool assumed = false;
-  std::string work_offset;  ///< one that its control has
+  std::vector<std::string> assumed_keys;    ///< of its file, dotted names
+  std::vector<machines::Coolant> coolants;  ///< that it can switch on
+  std::optional<double> table_top_mm;       ///< Z of the face of the table, where its file says it
+  std::string work_offset;                  ///< one that its control has
 };
 /// @param directory  of the job. Refused: what the file refuses, the other kind of machine.
 [[nodiscard]] Expected<ChosenMachine, std::vector<Diagnostic>> choose_machine(const Wishes& wishes,
@@ -36,6 +40,12 @@ struct ChosenGear {
 /// Refused: all that the gear refuses, each with the option that it belongs to.
 [[nodiscard]] Expected<ChosenGear, std::vector<Diagnostic>> choose_gear(const Wishes& wishes);
 
+/// Of the number that decides how large a ball reaches the root, and what a larger ball takes.
+struct BallLimit {
+  const char *option, *larger;
+};
+[[nodiscard]] BallLimit ball_limit(const ChosenGear& gear);
+
 /// Ways to make the same gear that are worth a try, best first: `attempt` counts them.
 inline constexpr int kAttempts = 4;
 /// Refused: no tool of the shelf reaches the root or fits a space; a machine that is too small.
@@ -47,6 +57,9 @@ inline constexpr int kAttempts = 4;
 [[nodiscard]] std::optional<double> least_swing_mm(const Wishes& wishes);
 /// Refused: a part that the machine does not turn, with the installed machines that do.
 [[nodiscard]] Status check_swing(const ChosenMachine& machine, double diameter_mm);
+
+/// "axes.A.point, axes.C.point, .. and 12 more".
+[[nodiscard]] std::string assumed_words(const ChosenMachine& machine);
 
 /// A limit that somebody choosing wants to see, and its value.
 using Told = std::vector<std::pair<std::string, std::string>>;

@@ -80,7 +80,7 @@ constexpr Question kQuestions[] = {
      "radius of the ball that rolls between flank and root of a gear by points",
      {0, 1000, " mm", true},
      false},
-    {Quantity::bore, "--bore", "diameter of the bore of a gear by points; 0: none", {0, 2000, " mm"}, false},
+    {Quantity::bore, "--bore", "diameter of the bore; 0: none", {0, 2000, " mm"}, false},
 };
 
 constexpr double kInch = 25.4;        // mm
@@ -174,9 +174,10 @@ std::string_view word_of(Route route) { return kRouteWords[static_cast<std::size
 std::span<const Question> questions() { return kQuestions; }
 
 bool belongs(const Question& question, Gear gear) {
-  const bool by_points = question.what == Quantity::fillet_radius || question.what == Quantity::bore;
+  const bool by_points = question.what == Quantity::fillet_radius;
   if (gear == Gear::flank_grid || by_points)
-    return gear == Gear::flank_grid && (by_points || question.what == Quantity::teeth);
+    return gear == Gear::flank_grid &&
+           (by_points || question.what == Quantity::bore || question.what == Quantity::teeth);
   const bool herringbone = gear == Gear::bevel_herringbone, spiral = gear == Gear::spiral_bevel,
              cylindrical = is_cylindrical(gear), bevel = herringbone || spiral || gear == Gear::straight_bevel;
   switch (question.what) {
@@ -198,8 +199,8 @@ bool belongs(const Question& question, Gear gear) {
     case Quantity::tip_radius:
     case Quantity::inner:
     case Quantity::outer: return !bevel && !cylindrical;
-    case Quantity::fillet_radius:
-    case Quantity::bore: break;
+    case Quantity::bore: return cylindrical || gear == Gear::straight_bevel;
+    case Quantity::fillet_radius: break;
   }
   return false;
 }

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "app/proposal/quality.h"
 #include "geometry/cylindrical/parameters.h"
 #include "geometry/flank_grid/parameters.h"
 #include "geometry/spiral_bevel/parameters.h"
@@ -77,6 +78,9 @@ struct Wishes {
   std::optional<Route> route;
   std::string machine;  ///< as a job names it
   std::array<std::optional<double>, kQuantities> numbers{};
+  Quality quality;
+  std::string coolant;                 ///< as a job says it; empty: none
+  std::optional<double> blank_top_mm;  ///< above the face of the table; nothing: where the travels have most room
   int hand = 0;  ///< of a spiral bevel gear by a drawing, of the inner half of a herringbone: 1 right, -1 left
 
   // Gears whose numbers stand in a file.

@@ -20,6 +20,8 @@ Expected<Choice, std::vector<Diagnostic>> once(const Given& request, Dialog& dia
   if (auto* errors = machine.refused()) return std::move(*errors);
   choice.machine = std::move(machine.value());
   dialog.tell(limits_of(choice.machine));
+  if (auto more = wish_conditions(choice.wishes, request, dialog, choice.machine); auto* errors = more.refused())
+    return std::move(*errors);
   if (auto numbers = wish_numbers(choice.wishes, request, dialog, choice.machine); auto* errors = numbers.refused())
     return std::move(*errors);
   auto gear = proposal::choose_gear(choice.wishes);

@@ -23,6 +23,9 @@ using DoneOrErrors = Expected<Ok, std::vector<Diagnostic>>;
 [[nodiscard]] Expected<proposal::Wishes, std::vector<Diagnostic>> kinds_wished(const Given& request,
                                                                                app::Dialog& dialog,
                                                                                proposal::Told& notes);
+/// What machine and shop add: assumed values, quality, coolant, where the blank stands.
+[[nodiscard]] DoneOrErrors wish_conditions(proposal::Wishes& wishes, const Given& request, app::Dialog& dialog,
+                                           const proposal::ChosenMachine& machine);
 /// All numbers of the gear, each with the limits that are known before it.
 [[nodiscard]] DoneOrErrors wish_numbers(proposal::Wishes& wishes, const Given& request, app::Dialog& dialog,
                                         const proposal::ChosenMachine& machine);

@@ -161,23 +161,23 @@ DoneOrErrors choose_tools(const Given& request, app::Dialog& dialog, Choice& cho
     if (auto* errors = asked.refused()) return std::move(*errors);
     choice.shelf = std::move(asked.value());
   }
-  const auto draft = proposal::draft_of(request.name, choice.wishes, choice.machine, choice.gear, choice.shelf, 0);
-  if (!any && !draft) {
-    Diagnostic error = draft.error();
-    error.message += fmt::format("; of {}{}", request.tools, printable(reasons(library, choice)));
-    return std::vector{std::move(error)};
+  if (!any) {
+    const proposal::BallLimit limit = proposal::ball_limit(choice.gear);
+    return std::vector{fail_as(DiagnosticKind::refused_input,
+                               "{}: {} has no {} that reaches the root of the tooth spaces, at most {:.3f} mm wide and "
+                               "{:.2f} mm deep; {} takes "
+                               "a larger ball{}",
+                               limit.option, request.tools,
+                               choice.wishes.route == proposal::Route::line ? "tapered ball mill" : "ball mill",
+                               choice.gear.facts.most_finishing_mm(), choice.gear.facts.depth, limit.larger,
+                               printable(reasons(library, choice)))};
   }
+  const auto draft = proposal::draft_of(request.name, choice.wishes, choice.machine, choice.gear, choice.shelf, 0);
   if (const std::string lacks = lacking(library, choice); !lacks.empty() && (choice.shelf.empty() || !draft))
     return usage(
         fmt::format("--tools: {} does not say all of its tools that would do: {}; say it with --tool, as "
                     "--tool \"NUMBER: KEY = VALUE, KEY = VALUE\"",
                     request.tools, printable(lacks)));
-  if (choice.shelf.empty())
-    return usage(fmt::format(
-        "--tools: {} has no {} that reaches the root of the tooth spaces, at most {:.3f} mm wide "
-        "and {:.2f} mm deep{}",
-        request.tools, choice.wishes.route == proposal::Route::line ? "tapered ball mill" : "ball mill",
-        choice.gear.facts.most_finishing_mm(), choice.gear.facts.depth, printable(reasons(library, choice))));
   std::error_code error;
   const fs::path from = fs::path(request.file).parent_path(),
                  near = fs::proximate(request.tools, from.empty() ? "." : from, error);

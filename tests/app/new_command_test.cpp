@@ -271,6 +271,60 @@ TEST(New, NeverReplacesAFile) {
   EXPECT_EQ(file_text(dir / "job.toml"), "mine\n");
 }
 
+/// `key = number` of a job, the last one.
+double last_number(const std::string& text, const std::string& key) {
+  const auto at = text.rfind("\n" + key + " = ");
+  EXPECT_NE(at, std::string::npos) << key << text;
+  return at == std::string::npos ? NAN : std::stod(text.substr(at + key.size() + 4));
+}
+
+/// The tolerances follow from the class that is asked for, and the job says how; Z 0 is the top of the blank.
+TEST(New, TolerancesFollowFromTheQualityAskedFor) {
+  const TestDir dir;
+  const std::string file = dir / "job.toml";
+  const Finished made = run_new(
+      gear("face", "ball", "xyzac_large", {"--teeth", "60", "--module", "2", "--class", "8", "--coolant", "flood"}),
+      file);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const std::string text = file_text(file);
+  const double T = 0.001 * 6.1 * std::pow(2, 1.5);  // (0.55 m + 5) sqrt(2)^(8 - 5)
+  EXPECT_NEAR(last_number(text, "gouge_tolerance"), 0.2 * T, 1e-4);
+  EXPECT_NEAR(last_number(text, "scallop"), 0.4 * T, 1e-4);
+  EXPECT_NEAR(last_number(text, "chord_tolerance"), 0.08 * T, 1e-4);
+  EXPECT_LT(last_number(text, "gouge_tolerance") + last_number(text, "scallop") + last_number(text, "chord_tolerance"),
+            T);
+  EXPECT_NE(
+      text.find("# Form of the flanks: T = 17.25 um, ISO 1328-1 class 8: f_f_alpha = (0.55 m + 5) sqrt(2)^(8 - 5) "
+                "with m = 2 mm, the standard of cylindrical gears.\n"),
+      std::string::npos)
+      << text;
+  EXPECT_NE(text.find("\n[coolant]\nmode = \"flood\"\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("# on the gear axis; Z 0 is the top of the blank\n"), std::string::npos) << text;
+  EXPECT_LT(nlohmann::json::parse(made.out)["report"]["proof"]["gouge_um"]["bound"], 1000 * 0.2 * T);
+}
+
+TEST(New, RefusesConditionsThatDoNotHold) {
+  const TestDir dir;
+  const std::pair<Words, const char*> cases[] = {
+      {{"xyzac_large", "--class", "6", "--tolerance", "8"}, "error: --class and --tolerance say the same of a gear"},
+      {{"xyzac_large", "--coolant", "through_spindle"}, "error: --coolant = through_spindle: "},
+      {{"xyzac_large", "--blank-top", "80"}, "error: --blank-top counts from the face of the table, and "},
+      {{"t600s", "--accept-assumed", "no"}, "error: --accept-assumed: T-600S has values that are assumed ("},
+      {{"t600s", "--accept-assumed", "perhaps"}, "error: --accept-assumed = \"perhaps\" is not one of yes, no"},
+  };
+  for (const auto& [words, error] : cases) {
+    Words all = gear("face", "ball", words.front().c_str(), {"--teeth", "60", "--module", "1.5"});
+    all.insert(all.end(), words.begin() + 1, words.end());
+    const Finished made = run_new(all, dir / "job.toml");
+    EXPECT_NE(made.exit_code, 0) << joined(all);
+    EXPECT_TRUE(made.err.starts_with(error)) << joined(all) << "\n" << made.err;
+  }
+  const Finished shaped =
+      run_new(gear("face", "shaped", "y514", {"--teeth", "53", "--module", "2", "--class", "6"}), dir / "job.toml");
+  EXPECT_TRUE(shaped.err.starts_with("error: --class does not belong to --cut shaped")) << shaped.err;
+  EXPECT_TRUE(names_in(dir.path()).empty());
+}
+
 constexpr const char* kFusion = R"({"version": 36, "data": [
  {"type": "ball end mill", "description": "1 mm ball", "unit": "millimeters", "post-process": {"number": 4},
   "geometry": {"DC": 1, "LCF": 7, "LB": 27, "SFDM": 4, "NOF": 2, "assemblyGaugeLength": 97},
@@ -364,8 +418,9 @@ std::string on_terminal(const Words& words, const std::string& typed, int& exit_
 TEST(New, AsksOnATerminalAndShowsLimitsBeforeTheEndsOfTheTeeth) {
   const TestDir dir;
   int exit_code = -1;
-  const std::string shown = on_terminal({TOOTHPATH_BINARY, "new", "-o", dir / "job.toml"},
-                                        "gace\nface\nball\nxyzac_large\n9\n60\n\n2\n\n\n\n\n\n", exit_code);
+  const std::string shown =
+      on_terminal({TOOTHPATH_BINARY, "new", "-o", dir / "job.toml"},
+                  "gace\nface\nball\nxyzac_large\nclass 12\nclass 7\n\n9\n60\n\n2\n\n\n\n\n\n", exit_code);
   EXPECT_EQ(exit_code, 0) << shown;
   EXPECT_NE(shown.find("did you mean \"face\"?"), std::string::npos) << shown;
   EXPECT_NE(shown.find("teeth of the gear (10 to 1000): "), std::string::npos) << shown;
@@ -384,14 +439,19 @@ TEST(New, AsksOnATerminalAndShowsLimitsBeforeTheEndsOfTheTeeth) {
   EXPECT_LT(swing, travels) << shown;
   EXPECT_LT(travels, shown.find("room in travels: X ")) << shown;
   EXPECT_LT(travels, shown.find("distance index")) << "before anything is planned\n" << shown;
-  EXPECT_NE(file_text(dir / "job.toml").find("teeth = 60\n"), std::string::npos);
+  EXPECT_NE(shown.find("class = 12 is not a whole number from 1 to 11, or a class: \"class 6\""), std::string::npos)
+      << shown;
+  const std::string text = file_text(dir / "job.toml");
+  EXPECT_NE(text.find("teeth = 60\n"), std::string::npos);
+  EXPECT_NE(text.find("# Form of the flanks: T = 12.20 um, ISO 1328-1 class 7: "), std::string::npos) << text;
 }
 
 /// A face gear for a shaper is soon tried: its questions are --teeth, --shaper-teeth, --module, --pressure-angle,
 /// --helix,
 /// --tip-radius, --inner, --outer.
 Words shaped_face_gear(const std::string& file) {
-  return {TOOTHPATH_BINARY, "new", "--gear", "face", "--cut", "shaped", "--machine", "y514", "-o", file};
+  return {TOOTHPATH_BINARY, "new",  "--gear",           "face", "--cut", "shaped",
+          "--machine",      "y514", "--accept-assumed", "yes",  "-o",    file};
 }
 
 TEST(New, ExplainsGoesBackAndAsksAgainForWhatCannotBeMade) {
@@ -409,6 +469,28 @@ TEST(New, ExplainsGoesBackAndAsksAgainForWhatCannotBeMade) {
   EXPECT_NE(text.find("\nteeth = 53\n"), std::string::npos) << text;
   EXPECT_NE(text.find("\nmodule = 2.0"), std::string::npos) << text;
   EXPECT_EQ(names_in(dir.path()).size(), 1U) << "the answers are kept no longer than they are needed";
+}
+
+/// Assumed values are shown and accepted in words; the blank stands as high as the shop clamps it.
+TEST(New, AsksForAssumedValuesAndWhereTheBlankStands) {
+  const TestDir dir;
+  int exit_code = -1;
+  const std::string shown = on_terminal({TOOTHPATH_BINARY, "new", "--gear", "face", "--cut", "ball", "--machine",
+                                         "t600s", "--teeth", "60", "--module", "1.5", "-o", dir / "job.toml"},
+                                        "no\nyes\n12 um\n\nhigh\n60\n\n\n\n\n\n\n", exit_code);
+  EXPECT_EQ(exit_code, 0) << shown;
+  EXPECT_NE(shown.find("assumed in the machine file, measured by nobody: "), std::string::npos) << shown;
+  EXPECT_NE(shown.find("not possible: --accept-assumed: T-600S has values that are assumed ("), std::string::npos)
+      << shown;
+  const std::string face = "face of the table: machine Z ";
+  const auto at = shown.find(face);
+  ASSERT_NE(at, std::string::npos) << shown;
+  EXPECT_NE(shown.find(", or \"any\""), std::string::npos) << shown;
+  const std::string text = file_text(dir / "job.toml");
+  EXPECT_NE(text.find("# Form of the flanks: T = 12.00 um, as asked for.\n"), std::string::npos) << text;
+  const auto zero = text.find("work_offset_at = [0.0, 0.0, ");
+  ASSERT_NE(zero, std::string::npos) << text;
+  EXPECT_NEAR(std::stod(text.substr(zero + 28)), std::stod(shown.substr(at + face.size())) + 60, 1e-3) << text;
 }
 
 TEST(New, AnswersOutliveCtrlC) {
@@ -475,7 +557,9 @@ TEST(New, AsksAgainForWhatTheMachineDoesNotTurn) {
   int exit_code = -1;
   const std::string shown = on_terminal({TOOTHPATH_BINARY, "new", "--gear", "face", "--cut", "ball", "--machine",
                                          "t600s", "--teeth", "150", "--module", "1.5", "-o", dir / "job.toml"},
-                                        "\n\n\n\n\n126\n116\n", exit_code);
+                                        "\n\n\n\n"
+                                        "\n\n\n\n\n126\n116\n",
+                                        exit_code);
   EXPECT_EQ(exit_code, 0) << shown;
   EXPECT_NE(shown.find("outer end that turns on T-600S: up to 125 mm"), std::string::npos) << shown;
   EXPECT_NE(
@@ -638,7 +722,10 @@ TEST(New, OffersOnlyToolsThatReachAndSaysWhyTheOthersDoNot) {
   Words words = with_tools(dir / "lib.json", {"-o", dir / "job.toml"});
   words.insert(words.begin(), {TOOTHPATH_BINARY, "new"});
   int exit_code = -1;
-  const std::string shown = on_terminal(words, "\n\n\n\n\n\n4\n1\n", exit_code);
+  const std::string shown = on_terminal(words,
+                                        "\n\n"
+                                        "\n\n\n\n\n\n4\n1\n",
+                                        exit_code);
   EXPECT_EQ(exit_code, 0) << shown;
   for (const char* line :
        {"tool 1: whole", "tool 2: lacks flute_length", "tool 3: not offered: 16 mm wide: at most ",
@@ -651,19 +738,24 @@ TEST(New, OffersOnlyToolsThatReachAndSaysWhyTheOthersDoNot) {
   EXPECT_EQ(shown.find("tool 2: flute_length"), std::string::npos) << "it was not chosen\n" << shown;
 }
 
-/// Where no tool reaches the root, none is asked about.
+/// Where no tool reaches the root, none is asked about: the number of the gear that is in the way is asked for again.
 TEST(New, AsksNothingAboutToolsOfWhichNoneReachesTheRoot) {
   const TestDir dir;
   write_file(dir / "shop.tbl", "T1 P1 D1.9 Z80\nT2 P2 D1.7 Z80\n");
   Words words = with_tools(dir / "shop.tbl", {"-o", dir / "job.toml"});
   words.insert(words.begin(), {TOOTHPATH_BINARY, "new"});
   int exit_code = -1;
-  const std::string shown = on_terminal(words, "\n\n\n0.2\n\n\n\x04", exit_code);
+  const std::string shown = on_terminal(words,
+                                        "\n\n"
+                                        "\n\n\n0.2\n\n\n\x04",
+                                        exit_code);
   EXPECT_EQ(exit_code, 2) << "the answers end\n" << shown;
   EXPECT_EQ(shown.find("that may be used"), std::string::npos) << shown;
-  EXPECT_NE(shown.find("has no ball mill that reaches the root of the tooth spaces, at most 0.388 mm wide"),
+  EXPECT_NE(shown.find(" has no ball mill that reaches the root of the tooth spaces, at most 0.388 mm wide and 4.50 mm "
+                       "deep; a larger rounding of the shaper's tip takes a larger ball; tool 1: it may rough, but"),
             std::string::npos)
       << shown;
+  EXPECT_NE(shown.find("not possible: --tip-radius: "), std::string::npos) << shown;
   EXPECT_NE(shown.find("tool 2: it may rough, but no ball_end_mill of this library reaches the root: that takes 0."),
             std::string::npos)
       << shown;
@@ -689,8 +781,10 @@ TEST(New, AsksOnATerminalForWhatALibraryDoesNotSay) {
   words.insert(words.begin(), {TOOTHPATH_BINARY, "new"});
   int exit_code = -1;
   // The numbers of the gear; the tools; a wrong kind, the right one; a wrong shank, the right one; the rest.
-  const std::string shown =
-      on_terminal(words, "\n\n\n\n\n\n7\n\nflat_end_mill\nball_end_mill\n-4\n4\n27\n[[11, 11, 30]]\n7\n", exit_code);
+  const std::string shown = on_terminal(words,
+                                        "\n\n"
+                                        "\n\n\n\n\n\n7\n\nflat_end_mill\nball_end_mill\n-4\n4\n27\n[[11, 11, 30]]\n7\n",
+                                        exit_code);
   EXPECT_EQ(exit_code, 0) << shown;
   EXPECT_NE(shown.find("tool 12 (ball nose): lacks type (one of ball_end_mill), "), std::string::npos) << shown;
   EXPECT_NE(shown.find("tools of "), std::string::npos) << shown;
