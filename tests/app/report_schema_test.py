@@ -1,7 +1,7 @@
 """docs/schema/report.schema.json against the program that writes the reports.
 
 Asked: reports of runs of every kind pass; every key that the sources of the report write is in the schema, and every
-property of the schema is written there.
+property of the schema is written there; the sources of error of both are the same.
 """
 
 import json
@@ -51,6 +51,19 @@ def written():
             keys.update(re.findall(r'\{"([a-z_]+)"', details))
     return keys
 
+
+def sources(value):
+    """The enumeration that begins with the first source of error."""
+    inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else []
+    if isinstance(value, list) and "flank solve" in value:
+        return set(value)
+    return set().union(*map(sources, inner))
+
+
+with open(f"{root}/cam/proof/verification.h", encoding="utf-8") as file:
+    told = set(re.findall(r'case ErrorSource::\w+: return "([^"]+)"', file.read()))
+for source in sorted(told ^ sources(schema)):
+    faults.append(f"the schema and verification.h do not both have the source of error {source}")
 
 known, keys = set(properties(schema)), written()
 # Told by words of other rooms: regions, the names of the scene, the data of commands (app/base/command_data.h); the units of what
