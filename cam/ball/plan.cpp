@@ -86,7 +86,8 @@ class Planner::Work {
     for (std::size_t zone = 0; zone < zones.size(); ++zone) {
       if (const auto* refusal = (*zones[zone]).refused()) {
         PlanRefusal told = *refusal;
-        if (!o_.trial) told.diagnostic.message += what_would_do(n, int(zone));
+        const bool of_steps = told.key.find(".step_") != std::string::npos;  // another tool helps them little
+        if (!o_.trial && !of_steps) told.diagnostic.message += what_would_do(n, int(zone));
         return told;
       }
       if (auto refusal = lead_tool(n, int(zone), (*zones[zone]).value(), plan_.path, plan_.summary)) return *refusal;
@@ -230,6 +231,8 @@ class Planner::Work {
     r.blank_top_mm = part_.part().blank_top();
     r.climb = op.climb;
     r.end_centre_mm = tool::end_centre_mm(tool_of(n));
+    if (auto small = steps_too_small(out.sheet, r))
+      return PlanRefusal{key_of(n) + "." + small->key, std::move(small->diagnostic)};
     auto planned = plan_roughing(out.sheet, r, cleared_);
     if (!planned) return PlanRefusal{key_of(n) + ".tool", planned.error()};
     out.passes = std::move(planned->passes);

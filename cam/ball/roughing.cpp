@@ -6,7 +6,11 @@
 namespace toothpath::ball {
 namespace {
 
-constexpr std::size_t kMostPlaces = 1'000'000;  // of one tooth space: 300 bytes each, until they are a program
+// Of one tooth space: plan, text and proof of so many take about a minute, and 300 bytes each until they are a program.
+constexpr std::size_t kMostPlaces = 200'000;
+constexpr std::size_t kMostHeld = 1'000'000;  // whatever was estimated
+constexpr int kLayersCounted = 256, kLayersSampled = 5;
+constexpr double kStepUp = 1.05;  // from one step that is tried to the next
 
 // Of the ball's radius: where a pass has nothing to cut for longer, it is left and taken up again behind.
 constexpr double kShortestIdle = 6;
@@ -100,18 +104,10 @@ class RoughingPlanner {
       return fail("a ball of {:.4f} mm with {:.4f} mm allowance finds no surface between {} {:.4f} and {:.4f} mm",
                   2 * o_.ball_radius_mm, o_.allowance_mm, ring.along, from, to);
     }
-    from_ = std::max(sheet_.r_from(), ring.s_from - o_.overrun_mm);
-    to_ = std::min(sheet_.r_to(), ring.s_to + o_.overrun_mm);
-    double lowest = INFINITY;
-    for (const auto& s : sheet_.stations()) {
-      walls_.push_back(walls_of(sheet_, s));
-      lowest = std::min(lowest, walls_.back().bottom_height);
-      out_.reaches_root = out_.reaches_root && walls_.back().bottom_height == 0;
-    }
-    const double top = o_.blank_top_mm + o_.end_centre_mm - deepest_root();
-    for (double height = top - o_.step_down_mm;; height -= o_.step_down_mm) {
+    stand();
+    for (double height = top_ - o_.step_down_mm;; height -= o_.step_down_mm) {
       // The last layer follows the bottom: the root land, or the corner between both walls where the ball is too wide.
-      const bool last = height <= lowest + 1e-6;
+      const bool last = height <= lowest_ + 1e-6;
       if (auto ok = add_layer(last ? 0.0 : height); !ok) return ok.error();
       ++out_.layers;
       if (last) break;
@@ -119,7 +115,93 @@ class RoughingPlanner {
     return std::move(out_);
   }
 
+  [[nodiscard]] std::optional<Refusal> too_small() {
+    if (sheet_.empty()) return {};
+    stand();
+    const auto points = points_of_a_pass();
+    if (!points) return {};
+    const auto many = [&](double down, double over) { return *points * passes(down, over) > double(kMostPlaces); };
+    const double down = o_.step_down_mm, over = o_.step_over_mm, most = 2 * o_.ball_radius_mm;
+    if (!many(down, over)) return {};
+    const auto least = [&](double from, const auto& makes_many) {
+      double step = told_upwards(from);
+      while (step < most && makes_many(step)) step = told_upwards(kStepUp * step);
+      return step;
+    };
+    const bool lower = down <= over;
+    const double alone = lower ? least(down, [&](double step) { return many(step, over); })
+                               : least(over, [&](double step) { return many(down, step); });
+    const double both = least(std::max(down, over), [&](double step) { return many(step, step); });
+    std::string help = both < most ? fmt::format("{:g} mm for both does", both) : "a larger ball may";
+    if (alone < most)
+      help = fmt::format("{} = {:g} mm or more does{}", lower ? "step_down" : "step_over", alone,
+                         both < alone ? ", or " + help : "");
+    return Refusal{lower ? "step_down" : "step_over",
+                   fail("step_down = {:g} mm and step_over = {:g} mm make about {:.2g} places of one tooth space, more "
+                        "than {}: minutes of planning; {}",
+                        down, over, *points * passes(down, over), kMostPlaces, help)};
+  }
+
  private:
+  /// Upwards to two digits, as it is printed.
+  [[nodiscard]] static double told_upwards(double mm) {
+    const double digit = std::pow(10.0, std::floor(std::log10(mm)) - 1);
+    return std::ceil(mm / digit - 1e-9) * digit;
+  }
+
+  /// Between which ends, over which bottom.
+  void stand() {
+    const auto& ring = sheet_.space().outline();
+    from_ = std::max(sheet_.r_from(), ring.s_from - o_.overrun_mm);
+    to_ = std::min(sheet_.r_to(), ring.s_to + o_.overrun_mm);
+    for (const auto& s : sheet_.stations()) {
+      walls_.push_back(walls_of(sheet_, s));
+      lowest_ = std::min(lowest_, walls_.back().bottom_height);
+      out_.reaches_root = out_.reaches_root && walls_.back().bottom_height == 0;
+    }
+    top_ = o_.blank_top_mm + o_.end_centre_mm - deepest_root();
+  }
+  /// Passes of all layers, of many layers by some of them.
+  [[nodiscard]] double passes(double step_down, double step_over) const {
+    const double deep = std::max(0.0, top_ - lowest_), layers = std::max(1.0, std::ceil(deep / step_down));
+    const int counted = int(std::min(layers, double(kLayersCounted)));
+    double sum = 0;
+    for (int k = 1; k <= counted; ++k) sum += double(count_of(widest(top_ - deep * k / counted), step_over));
+    return sum * layers / counted;
+  }
+  /// Of the middle passes of some layers. Nothing: one cannot be followed.
+  [[nodiscard]] std::optional<double> points_of_a_pass() const {
+    double sum = 0;
+    for (int k = 1; k <= kLayersSampled; ++k) {
+      const auto line = sampled(top_ - (top_ - lowest_) * k / kLayersSampled, 0.5);
+      if (!line) return {};
+      sum += double(line->points.size());
+    }
+    return sum / kLayersSampled;
+  }
+  [[nodiscard]] double widest(double height) const {
+    double widest = 0;
+    for (int k = 0; k <= 8; ++k) {
+      const double r = from_ + (to_ - from_) * k / 8;
+      const auto w = width(height, r);
+      widest = std::max(widest, chart().r(r, w.height) * (w.minus - w.plus));
+    }
+    return widest;
+  }
+  [[nodiscard]] static std::size_t count_of(double widest, double step_over) {
+    return widest < 1e-6 ? 1 : 1 + std::max<std::size_t>(1, std::size_t(std::ceil(widest / step_over)));
+  }
+  [[nodiscard]] std::optional<SampledCurve> sampled(double height, double share) const {
+    const auto curve = [&](double r) -> std::optional<BallPass::Point> {
+      const auto w = width(height, r);
+      const double azimuth = w.plus + share * (w.minus - w.plus);
+      BallPass::Point p;
+      p.centre = chart().place(r, azimuth, w.height);
+      p.contact = p.centre;
+      return p;
+    };
+    return sample_curve(curve, from_, to_, o_.chord_mm, 2.0 * o_.ball_radius_mm);
+  }
   [[nodiscard]] const tooth_space::Chart& chart() const { return sheet_.space().outline().chart; }
   /// Layers keep their heights above the root, and of teeth that taper the first one is thickest where the root lies
   /// deepest below the tips: its height there, were all tips as high as the highest; no higher than in the middle.
@@ -155,15 +237,9 @@ class RoughingPlanner {
   }
 
   Status add_layer(double height) {
-    double widest = 0;
-    for (int k = 0; k <= 8; ++k) {
-      const double r = from_ + (to_ - from_) * k / 8;
-      const auto w = width(height, r);
-      widest = std::max(widest, chart().r(r, w.height) * (w.minus - w.plus));
-    }
-    const int count = widest < 1e-6 ? 1 : 1 + std::max(1, int(std::ceil(widest / o_.step_over_mm)));
+    const std::size_t count = count_of(widest(height), o_.step_over_mm);
     std::vector<double> shares;
-    for (int k = 0; k < count; ++k) shares.push_back(count == 1 ? 0.5 : double(k) / (count - 1));
+    for (std::size_t k = 0; k < count; ++k) shares.push_back(count == 1 ? 0.5 : double(k) / double(count - 1));
     // From the middle to the walls, in turn, so that both walls are cut climbing.
     std::stable_sort(shares.begin(), shares.end(), [](double a, double b) {
       const double da = std::abs(a - 0.5), db = std::abs(b - 0.5);
@@ -171,15 +247,7 @@ class RoughingPlanner {
     });
     bool opens = true;
     for (double share : shares) {
-      const auto curve = [&](double r) -> std::optional<BallPass::Point> {
-        const auto w = width(height, r);
-        const double azimuth = w.plus + share * (w.minus - w.plus);
-        BallPass::Point p;
-        p.centre = chart().place(r, azimuth, w.height);
-        p.contact = p.centre;
-        return p;
-      };
-      const auto line = sample_curve(curve, from_, to_, o_.chord_mm, 2.0 * o_.ball_radius_mm);
+      const auto line = sampled(height, share);
       if (!line) return fail("the layer {:.4f} mm above the root cannot be followed", height);
       const auto stretches = cutting_stretches(line->points);
       if (stretches.empty()) ++out_.skipped;
@@ -190,7 +258,7 @@ class RoughingPlanner {
         pass.outward = (share <= 0.5) == o_.climb;
         if (!pass.outward) std::reverse(pass.points.begin(), pass.points.end());
         places_ += pass.points.size();
-        if (places_ > kMostPlaces) return too_many();
+        if (places_ > kMostHeld) return too_many();
         out_.passes.push_back(std::move(pass));
       }
       opens = opens && stretches.empty();
@@ -202,7 +270,7 @@ class RoughingPlanner {
     return fail(
         "step_down = {:g} mm and step_over = {:g} mm: {} layers of one tooth space have more than {} places, "
         "and that is not all of them; larger steps have fewer",
-        o_.step_down_mm, o_.step_over_mm, out_.layers + 1, kMostPlaces);
+        o_.step_down_mm, o_.step_over_mm, out_.layers + 1, kMostHeld);
   }
 
   /// First and last points of the stretches in which a ball along these centres removes what earlier operations left:
@@ -254,15 +322,21 @@ class RoughingPlanner {
   const tooth_space::OffsetSheet& sheet_;
   RoughingOptions o_;
   const std::vector<const cut::Removed*>& cleared_;
-  double from_ = 0, to_ = 0;
-  std::vector<Walls> walls_;  ///< one a station
-  std::size_t places_ = 0;    ///< of all passes
+  double from_ = 0, to_ = 0;            ///< ends of the passes
+  double top_ = 0, lowest_ = INFINITY;  ///< heights of centres: above all layers, and of the deepest
+  std::vector<Walls> walls_;            ///< one a station
+  std::size_t places_ = 0;              ///< of all passes
   /// Of every direction of a ball and every operation before: the motion that removed there last.
   std::vector<std::size_t> answered_;
   RoughingPasses out_;
 };
 
 }  // namespace
+
+std::optional<Refusal> steps_too_small(const tooth_space::OffsetSheet& sheet, const RoughingOptions& options) {
+  const std::vector<const cut::Removed*> none;
+  return RoughingPlanner(sheet, options, none).too_small();
+}
 
 Result<RoughingPasses> plan_roughing(const tooth_space::OffsetSheet& sheet, const RoughingOptions& options,
                                      const std::vector<const cut::Removed*>& cleared) {

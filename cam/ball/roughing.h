@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "cam/ball/finishing.h"
 #include "cam/cut/swept_tool.h"
+#include "geometry/base/refusal.h"
 
 namespace toothpath::ball {
 
@@ -27,6 +29,11 @@ struct RoughingPasses {
   int layers = 0, skipped = 0;   ///< passes left out because an earlier operation had cleared them
   bool reaches_root = true;      ///< false: the ball is too wide and stops in the corners between both walls
 };
+
+/// Steps that make more places of one tooth space than are planned in about a minute: the key of the smaller one, and
+/// the least of it that does beside the other one, and of both. Nothing: they make fewer.
+[[nodiscard]] std::optional<Refusal> steps_too_small(const tooth_space::OffsetSheet& sheet,
+                                                     const RoughingOptions& options);
 
 /// `cleared` are the volumes removed by earlier operations: a pass that would cut nothing (`path::kSkinShare`) is left
 /// out, and of others what cuts nothing at their ends or over a long stretch between.

@@ -217,7 +217,10 @@ class MillingPlanner {
       for (; step >= kNarrowest * asked; step *= kNarrower) {
         op.step_over_mm = step;
         auto planned = ball_.plan(n, cleared(), {});
-        if (planned.refused()) return planned;
+        if (const auto* refused = planned.refused()) {
+          if (step < asked && refused->key.ends_with(".step_over")) break;  // of narrower passes there are too many
+          return planned;
+        }
         if (keeps_engagement(op, planned.value(), kFewMotions) && keeps_engagement(op, planned.value(), 1))
           return planned;
       }
