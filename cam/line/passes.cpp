@@ -326,8 +326,11 @@ class PassPlanner {
         return Ok{};
       }
       if (!p)
-        return fail("zone {}: flank {:+d} ends for the anchors at {}, before its corner at the {} end is reached",
-                    fit_.flank().zone, fit_.flank().side, told(station(k)), end_name(sense));
+        return fail(
+            "zone {}: flank {:+d} ends for the anchors at {}, before its corner at the {} end is reached; rotaries = "
+            "\"both\", more strips or a mill with a smaller half_angle may follow it, a finishing operation with "
+            "regions = [\"flank\"] needs no anchors",
+            fit_.flank().zone, fit_.flank().side, told(station(k)), end_name(sense));
       if (p->gap.in_ring()) delta = p->angles.delta;
       end = k;
       s_end = station(k);
