@@ -245,7 +245,8 @@ void CutterSweep::flute(double low, double ball_bound) {
     if (looks-- > 0 && clear_above(row, h, low, std::max(ball_bound, 0.0))) return;
     const double H = row.height - h;
     double high = remembered(row);
-    const auto good = [&] { return settled(least_between(low, high, H), worst_, 0, R_); };
+    // Nothing of this row was looked at: beyond the tolerance its own places are.
+    const auto good = [&] { return settled(least_between(low, high, H), -INFINITY, 0, R_); };
     if (!good()) high = std::max(high, fresh(row));
     const double least = least_between(low, high, H);
     if (good()) found_.bound_mm = std::max(found_.bound_mm, R_ - least);
