@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/process/gear_of_job.h"
+#include "app/process/least_values.h"
 #include "cam/path/asked_stock.h"
 #include "geometry/base/angle.h"
 #include "postproc/controls/of_machine.h"
@@ -14,7 +15,6 @@ namespace {
 constexpr double kProofShare = 0.1;    // of the gouge tolerance
 constexpr double kCoarseShare = 0.25;  // of the gouge tolerance: a rounding that is told
 constexpr double kSureShare = 0.5;     // of the rounding of one word: some of many places are off by that much
-constexpr double kTakenShare = 0.5;    // of the gouge tolerance: chords and proof take so much of it by themselves
 
 /// The walls of a finger mill are those of its last finishing operation, whatever cuts the root afterwards.
 std::optional<double> left_of_fingers(const job::Job& job) {
@@ -81,32 +81,30 @@ double word_rounding(const machines::Machine& machine, double radius_mm) {
 
 std::vector<Diagnostic> finer_than_the_machine(const job::Job& job, const machines::Machine& machine,
                                                double radius_mm) {
-  const auto dialect = controls::dialect_of(machine);
-  if (!dialect) return {};
+  const Taken taken = taken_by(machine, radius_mm);
+  if (taken.step_mm == 0) return {};
   std::vector<Diagnostic> out;
-  // Every cut is counted so much deeper; where the text grants a tolerance, it is made small enough.
-  const double path =
-                   dialect->blend ? 0 : std::max({dialect->exact_path_mm, dialect->corner_mm, dialect->smoothing_mm}),
-               step = std::pow(10.0, -dialect->format.linear_decimals), off = kSureShare * 0.5 * step,
+  const double path = taken.path_mm, step = taken.step_mm, off = kSureShare * 0.5 * step,
                tolerance = job.verify.gouge_tolerance_mm;
   if (tolerance < path + off)
     out.push_back(located(
         job, "verify.gouge_tolerance",
         fail("gouge_tolerance = {:g} mm is below {:g} mm, what this machine can keep: its control leaves the path by "
-             "up to {:g} mm, and words of {:g} mm are {:g} mm off in some blocks; {:.2g} mm leaves room for every "
+             "up to {:g} mm, and words of {:g} mm are {:g} mm off in some blocks; {:g} mm leaves room for every "
              "rounding and for the proof; {}",
-             tolerance, path + off, path, step, off, (path + word_rounding(machine, radius_mm)) / kTakenShare,
+             tolerance, path + off, path, step, off, least_gouge_tolerance(taken),
              path > off ? "a smaller post.corner_tolerance (or post.smoothing_tolerance) of the machine file helps, "
                           "where its control keeps it"
                         : "finer increments (post.linear_decimals) help, where the control takes them")));
   const double least = off / (1 - path::kAskedStock);
   for (std::size_t n = 0; n < job.operations.size(); ++n)
     if (const double allowance = job.operations[n].allowance_mm; allowance > 0 && allowance < least)
-      out.push_back(located(job, fmt::format("operation[{}].allowance", n),
-                            fail("allowance = {:g} mm is below {:g} mm, the least that words of {:g} mm can leave: "
-                                 "they are {:g} mm off in "
-                                 "some blocks, and {:g} of the allowance must stay; 0 leaves none",
-                                 allowance, least, step, off, path::kAskedStock)));
+      out.push_back(
+          located(job, fmt::format("operation[{}].allowance", n),
+                  fail("allowance = {:g} mm is below {:g} mm, the least that words of {:g} mm can leave: they are {:g} "
+                       "mm off in some blocks, and {:g} of the allowance must stay; {:g} mm leaves room for every "
+                       "rounding, 0 leaves none",
+                       allowance, least, step, off, path::kAskedStock, least_allowance(taken))));
   return out;
 }
 

@@ -466,8 +466,7 @@ TEST(OutputDirectory, AnotherRunMovesTheEarlierOneToPrevious) {
   const auto first = file_text(dir / "out/program.ngc");
 
   // Not verified: the program moves, the report of the new one stands there alone.
-  write_file(dir / "job.toml",
-             std::regex_replace(file_text(kQuick), std::regex("gouge_tolerance = .*"), "gouge_tolerance = 0.0006"));
+  write_file(dir / "job.toml", not_verified_job());
   const Finished second = run_program({"run", dir / "job.toml", "--out", dir / "out"});
   EXPECT_EQ(second.exit_code, 1) << second.err;
   EXPECT_FALSE(std::filesystem::exists(dir / "out/program.ngc"));

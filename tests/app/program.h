@@ -24,6 +24,13 @@ inline const std::string kQuick = kSamples + "/spur_quick.toml";
 inline const std::string kMachines = TOOTHPATH_SOURCE_DIR "/machines/data";
 inline const std::string kBadJobs = TOOTHPATH_SOURCE_DIR "/tests/bad_jobs";
 
+/// spur_quick with a contour tolerance that is larger than its gouge tolerance: planned, written and not verified.
+inline std::string not_verified_job() {
+  return replaced(file_text(kQuick), "file = \"xyzac_large.toml\"",
+                  "file = \"siemens_ac.toml\"\naccept_assumed = true") +
+         "\n[program]\ncontour_tolerance = 0.01\n";
+}
+
 struct Finished {
   int exit_code = -1;  ///< -1: ended by a signal
   std::string out, err;

@@ -79,7 +79,8 @@ if len(keys) < 150:
 with tempfile.TemporaryDirectory() as folder:
     strict = f"{folder}/strict.toml"
     with open(f"{root}/samples/spur_quick.toml", encoding="utf-8") as file:
-        text = re.sub(r"gouge_tolerance = \S+", "gouge_tolerance = 0.0006", file.read())
+        text = file.read().replace('file = "xyzac_large.toml"', 'file = "siemens_ac.toml"\naccept_assumed = true')
+        text += "\n[program]\ncontour_tolerance = 0.01\n"
     with open(strict, "w", encoding="utf-8") as file:
         file.write(text)
     runs = [

@@ -9,6 +9,7 @@
 #include "app/process/bevel/files.h"
 #include "app/process/bevel/ledger.h"
 #include "app/process/bevel/proof.h"
+#include "app/process/least_values.h"
 #include "app/process/milled/toothed_process.h"
 #include "app/report/page/tool_body.h"
 #include "cam/finger/bodies.h"
@@ -24,6 +25,7 @@
 namespace toothpath::bevel {
 namespace {
 
+constexpr double kToldClearance = 0.01;                 // mm
 constexpr double kAboveTip_mm = 2, kBesideMill_mm = 4;  // where distances from a swept mill are asked most
 constexpr double kRootShare = 1;  // the flat tip of the mill faces the root: a length error reaches it in full
 
@@ -42,6 +44,7 @@ class FingerMilling final : public process::GearMilling {
       : job_(job),
         gear_(gear),
         limits_(limits),
+        taken_(process::taken_by(machine, 0)),  // of rotaries nothing is asked
         gouge_(gear, job.tools, job.operations, limits, check_options(grid)),
         check_(job, machine, limits, gear, gouge_) {
     check_.plan_anew = process::planned_once([this](std::size_t operations) -> process::PlannedMotions {
@@ -79,7 +82,15 @@ class FingerMilling final : public process::GearMilling {
     return out;
   }
   [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override {
-    return gouge_.approve(path);
+    auto passed = gouge_.approve(path);
+    if (passed || !job_.verify.clearance_mm) return passed;
+    const auto keeps = most_clearance();
+    if (!keeps || *keeps >= limits_.clearance_mm) return passed;
+    return process::located(
+        job_, "verify.clearance",
+        fail("clearance = {:g} mm is more than these tools keep: {}; {:g} or less does, or a thinner or longer shank "
+             "and holder",
+             limits_.clearance_mm, passed.error().message, *keeps));
   }
   [[nodiscard]] path::OperationType roughing() const override { return path::OperationType::finger_roughing; }
   [[nodiscard]] rest::Excess roughed() const override {
@@ -110,14 +121,33 @@ class FingerMilling final : public process::GearMilling {
   [[nodiscard]] sheet::OtherSurface beside_the_grid() const override { return {kRootShare}; }
 
  private:
+  /// The largest clearance that all paths keep, less what words round, downwards to `kToldClearance`. Nothing: they are
+  /// refused for something else, too.
+  [[nodiscard]] std::optional<double> most_clearance() const {
+    const auto keep = [&](double clearance_mm) {
+      proof::ProofLimits limits = limits_;
+      limits.clearance_mm = clearance_mm;
+      const finger::FingerGougeCheck check(gear_, job_.tools, job_.operations, limits);
+      return std::all_of(plans_.begin(), plans_.end(),
+                         [&](const finger::FingerPlan& plan) { return bool(check.approve(plan.path)); });
+    };
+    double low = 0, high = limits_.clearance_mm;
+    if (!keep(low)) return std::nullopt;
+    while (high - low > kToldClearance) (keep(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
+    return std::max(0.0, std::floor((low - taken_.words_mm) / kToldClearance) * kToldClearance);
+  }
+
   [[nodiscard]] Result<finger::FingerPlan> plan_of(std::size_t n) const {
     const auto& operation = job_.operations[n];
-    return finger::plan_finger_operation(gear_, job_.tools[std::size_t(operation.tool)], operation, int(n), limits_);
+    proof::ProofLimits planned = limits_;
+    planned.gouge_mm = process::planned_gouge(limits_.gouge_mm, taken_, process::kFingerChords);
+    return finger::plan_finger_operation(gear_, job_.tools[std::size_t(operation.tool)], operation, int(n), planned);
   }
 
   const job::Job& job_;
   const bevel_gear::BevelGear& gear_;
   proof::ProofLimits limits_;
+  process::Taken taken_;
   finger::FingerGougeCheck gouge_;
   BevelGearCheck check_;
   std::vector<finger::FingerPlan> plans_;

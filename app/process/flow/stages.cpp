@@ -10,6 +10,7 @@
 #include "app/process/flow/parts.h"
 #include "app/process/flow/registry.h"
 #include "app/process/flow/restart.h"
+#include "app/process/least_values.h"
 #include "app/process/ledger_sources.h"
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
@@ -191,6 +192,20 @@ Status prove_parts(Run& run, const proof::ProofLimits& limits, const process::Po
   return note_parts(run.report, posted, whole, run.milling->check(), judge, run.clock);
 }
 
+/// The refusal of a number for which the words of this machine are too coarse, where no other reason stands. Nothing:
+/// one does, or none is short.
+std::optional<Diagnostic> too_fine(const Run& run, const joints::AxisProgram& program,
+                                   const process::ProgramProof& proof) {
+  const double radius = 0.5 * run.gear.process->part().diameter_mm;
+  process::Taken taken = process::taken_by(run.machine, radius);
+  if (!program.turns_in_cuts)  // the angles of the teeth alone
+    taken.turns_mm = std::max(0.0, program.rounding_bound_mm - taken.words_mm);
+  auto refused = process::finer_than_the_program(run.job, taken, proof.gouge, proof.excess);
+  const std::size_t coarse = process::coarse_words(run.job, run.machine, radius) ? 1 : 0;  // told beside others
+  if (refused.empty() || run.report.reasons.size() > refused.size() + coarse) return std::nullopt;
+  return std::move(refused.front());
+}
+
 /// The program of the run, proven. Nothing: done, and `report.reasons` says whether it is safe.
 std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& limits, app::OutputDir& output) {
   const auto paths = run.paths();
@@ -221,7 +236,8 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
       for (std::string& help :
            process::what_would_help(run.report.ledger, *run.report.gouge, run.report.gouge_tolerance_mm))
         run.report.would_help.push_back(std::move(help));
-    return attempts.refusal(*made);
+    if (auto refused = attempts.refusal(*made)) return refused;
+    return too_fine(run, program, proof);
   }
   process::note_verified(run.report, posted.file, run.program_text);
   for (const report::PartReport& part : run.report.parts) run.report.files.push_back(part.file);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <tuple>
 
+#include "app/process/least_values.h"
 #include "app/process/milled/ledger.h"
 #include "app/process/proof_limits.h"
 #include "cam/ball/plan.h"
@@ -28,6 +29,8 @@ cut::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {
 plan::Options plan_options(const proof::ProofLimits& limits, const machines::Machine& machine, double outer_radius_mm) {
   plan::Options options;
   options.limits = limits;
+  options.limits.gouge_mm =
+      process::planned_gouge(limits.gouge_mm, process::taken_by(machine, outer_radius_mm), process::kBallChords);
   options.link_feed_mm_min = std::min(machine.max_cutting_feed, kLinkFeed);
   options.simultaneous_axes = machine.max_simultaneous_axes;
   options.line_bias_mm = line::kBias + kBiasShare * process::word_rounding(machine, outer_radius_mm);
@@ -79,12 +82,14 @@ Milling::Milling(const job::Job& job, const machines::Machine& machine, analytic
       modified_(modified ? modified->zones : std::vector<report::ModifiedFlanks::Zone>{}),
       limits_(limits),
       options_(plan_options(limits, machine, body.links.radius_mm)),
+      planned_operations_(
+          process::with_room_for_words(job.operations, process::taken_by(machine, body.links.radius_mm))),
       part_(std::move(part)),
       body_(std::move(body)),
       gouge_(part_, job.tools, {limits, part_.part().blank_top()}),
       check_(job, machine, limits, part_, body_, gouge_, surface_options(grid)) {
   check_.plan_anew = process::planned_once([this](std::size_t operations) -> process::PlannedMotions {
-    const auto first = job_.operations.begin();
+    const auto first = planned_operations_.begin();
     auto planned = plan::plan_milling(part_, job_.tools, {first, first + std::ptrdiff_t(operations)}, options_);
     if (auto* refusal = planned.refused()) return std::move(refusal->diagnostic);
     std::vector<path::ToolMotion> motions;
@@ -124,7 +129,7 @@ Status Milling::plan(app::StageClock& clock, app::Progress& progress) {
   plan::Options options = options_;
   options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
   auto planned = clock.run("plan", [&] {
-    return plan::plan_milling(part_, job_.tools, job_.operations, options,
+    return plan::plan_milling(part_, job_.tools, planned_operations_, options,
                               [&](const std::string& text) { progress.show(text); });
   });
   if (auto* refusal = planned.refused()) return process::located(job_, refusal->key, std::move(refusal->diagnostic));

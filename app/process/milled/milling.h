@@ -46,6 +46,7 @@ class Milling : public process::GearMilling {
   std::vector<report::ModifiedFlanks::Zone> modified_;
   proof::ProofLimits limits_;
   plan::Options options_;
+  std::vector<path::MillingOperation> planned_operations_;  ///< the job's, with room for the words
   analytic::GearDistance part_;
   GearBody body_;
   analytic::GougeCheck gouge_;

@@ -134,7 +134,8 @@ assert {flank.side for flank in toothpath.Gear(bevel).flanks()} == {"L", "U"}
 
 # A program that is not verified is a report without a program.
 strict = folder / "strict.toml"
-strict.write_text(quick.read_text().replace("gouge_tolerance = 0.002", "gouge_tolerance = 0.0006"))
+control = 'file = "siemens_ac.toml"\naccept_assumed = true'
+strict.write_text(quick.read_text().replace('file = "xyzac_large.toml"', control) + "\n[program]\ncontour_tolerance = 0.01\n")
 refused = toothpath.run(strict, folder / "strict")
 assert not refused.verified and refused.program is None and refused.reasons and not list((folder / "strict").glob("program.*"))
 
