@@ -208,14 +208,16 @@ TEST(JsonOfCorrect, SaysWhatWasMeasuredAndWhatIsLeft) {
 TEST(JsonOfCommands, AreAllAsked) {
   const std::string help = run_program(Words{"--help"}).out;
   for (const char* command : {"new", "fit", "run", "check", "correct", "surface", "shaper", "cutter", "forces",
-                              "contact", "compare", "probe", "study", "machine", "reference"})
+                              "contact", "compare", "probe", "study", "machine", "reference", "man-page", "completion"})
     EXPECT_NE(help.find(std::string("\n  ") + command + " "), std::string::npos) << command;
   const auto at = help.find("Subcommands:");
   ASSERT_NE(at, std::string::npos);
   std::size_t commands = 0;
   for (std::size_t line = help.find('\n', at) + 1; help.compare(line, 2, "  ") == 0; line = help.find('\n', line) + 1)
     commands += help[line + 2] != ' ' ? 1 : 0;
-  EXPECT_EQ(commands, 15U) << help;
+  EXPECT_EQ(commands, 17U) << help;
+  for (const Words& words : {Words{"man-page", "--json"}, {"completion", "bash", "--json"}})
+    EXPECT_EQ(nlohmann::json::parse(run_program(words).out)["exit_code"], 0) << words[0];
 }
 
 }  // namespace
