@@ -133,6 +133,27 @@ void ToothBuilder::push_turn_beside(const RotaryPair& rotaries) {
   push_turn(rotaries);
 }
 
+std::optional<RotaryPair> ToothBuilder::one_upright(const RotaryPair& from, const RotaryPair& to) const {
+  for (const std::size_t n : {0U, 1U}) {
+    machines::Joints j;
+    j.rotary_rad = from;
+    j.rotary_rad[n] = to[n];
+    if (j.rotary_rad != from && chain_.forward(j, words_.length()).axis.z() > 1 - 1e-9) return j.rotary_rad;
+  }
+  return {};
+}
+
+/// The tool rises beside the part to the height of links over it and stands up there. A text of tips and tool vectors,
+/// about a part that stands still, says nothing of the top of Z and goes on from here straight to where the next tooth
+/// starts.
+void ToothBuilder::rise_beside() {
+  Vec3 above = words_.tip(last_);
+  above.z() = link_height();
+  push_tip(above);
+  const RotaryPair zero = zero_rotaries();
+  push_turn_beside(one_upright(words_.joints(last_).rotary_rad, zero).value_or(zero));
+}
+
 /// Out along the tool axis to beside the part, turn there, across, and in along the tool axis. The first link comes
 /// from above: of an upright tool the rotary that turns the gear about its axis goes first, then the tool swings out.
 void ToothBuilder::link_beside(const machines::TablePose& target, const RotaryPair& rotaries) {
@@ -162,18 +183,7 @@ void ToothBuilder::link_beside(const machines::TablePose& target, const RotaryPa
   if (!first) push_tip(*out);
   const RotaryPair from = words_.joints(last_).rotary_rad;
   if (from != rotaries) {
-    if (first) {
-      // Which of the two leaves the tool upright?
-      for (const std::size_t n : {0U, 1U}) {
-        RotaryPair one = from;
-        one[n] = rotaries[n];
-        machines::Joints j;
-        j.rotary_rad = one;
-        if (one == from || !(chain_.forward(j, words_.length()).axis.z() > 1 - 1e-9)) continue;
-        push_turn_beside(one);
-        break;
-      }
-    }
+    if (const auto upright = first ? one_upright(from, rotaries) : std::nullopt) push_turn_beside(*upright);
     if (!error_ && words_.joints(last_).rotary_rad != rotaries) push_turn_beside(rotaries);
   }
   if (error_) return;
@@ -227,6 +237,7 @@ void ToothBuilder::leave_to_top() {
     const auto out =
         beside(words_.tip(last_), chain_.forward(words_.joints(last_), words_.length()).axis, beside_radius());
     if (out) push_tip(*out);
+    if (!error_ && chain_.table.empty() && program_.tcp == machines::TcpMode::vectors) rise_beside();
   } else {
     rise_along_tool();
   }

@@ -110,6 +110,10 @@ class ToothBuilder {
   [[nodiscard]] double beside_radius() const;
   std::optional<Vec3> beside(const Vec3& tip, const Vec3& axis, double radius);
   void push_turn_beside(const RotaryPair& rotaries);
+  /// Of two positions of the rotaries: the first with that rotary of the second which stands the tool upright; none
+  /// does.
+  [[nodiscard]] std::optional<RotaryPair> one_upright(const RotaryPair& from, const RotaryPair& to) const;
+  void rise_beside();
   void leave_to_top();
   void push_tip(const Vec3& tip);
   void push_turn(const RotaryPair& rotaries);

@@ -366,6 +366,22 @@ gouge_tolerance = 0.005
   write_file(job, replaced(text, "\"fanuc_ac\"", "\"fanuc_axes\""));
   const Finished made = run_program({"run", job, "--out", dir / "out", "--quiet"});
   EXPECT_EQ(made.exit_code, 0) << made.out << made.err;
+  // Cutter locations say nothing of the top of Z: from tooth to tooth the tool goes upright over the part.
+  write_file(job, replaced(text, "\"fanuc_ac\"", "\"apt_free\""));
+  const Finished places = run_program({"run", job, "--out", dir / "places", "--quiet"});
+  EXPECT_EQ(places.exit_code, 0) << places.out << places.err;
+  std::string apt = file_text(dir / "places/program.apt");
+  const std::size_t tooth = apt.find("$$ TOOTH 1"), risen = apt.rfind("RAPID\nGOTO/", tooth);
+  ASSERT_NE(risen, std::string::npos);
+  std::size_t rise = risen;
+  for (int n = 0; n < 2; ++n) {  // it stands up there; and the rise ahead of that
+    rise = apt.rfind("RAPID\nGOTO/", rise - 1);
+    ASSERT_NE(rise, std::string::npos);
+  }
+  write_file(dir / "low.apt", apt.erase(rise, tooth - rise));
+  const Finished low = run_program({"check", job, dir / "low.apt", "--out", dir / "low"});
+  EXPECT_EQ(low.exit_code, 1);
+  EXPECT_NE(low.err.find("a rapid passes through the part"), std::string::npos) << low.err;
 }
 
 }  // namespace
