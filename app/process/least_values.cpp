@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "app/process/gear_of_job.h"
 #include "cam/path/asked_stock.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/refusals.h"
 #include "postproc/controls/of_machine.h"
 
 namespace toothpath::process {
@@ -24,17 +24,6 @@ constexpr double kFewSteps = 0.1;  // words that take more of it leave less to t
 constexpr double kPlacing = 0.6;   // of a chord tolerance: what points are placed by
 
 constexpr double kStepUp = 1.02;  // from one number that is tried to the next
-
-double told_upwards(double mm) {
-  const double digit = std::pow(10.0, std::floor(std::log10(mm)) - 1);
-  return std::ceil(mm / digit - 1e-9) * digit;
-}
-
-double least_that(double from_mm, const std::function<bool(double)>& does) {
-  double mm = told_upwards(from_mm);
-  while (!does(mm)) mm = told_upwards(kStepUp * mm);
-  return mm;
-}
 
 /// Sag of chords in an allowance.
 double stock_chords(double allowance_mm, const Taken& taken) {
@@ -71,14 +60,14 @@ std::vector<path::MillingOperation> with_room_for_words(std::vector<path::Millin
 }
 
 double least_gouge_tolerance(const Taken& taken) {
-  return least_that(taken.path_mm + taken.words_mm, [&](double mm) {
+  return told_that_does(taken.path_mm + taken.words_mm, kStepUp, INFINITY, [&](double mm) {
     return taken.of_gouge(mm) + taken.turns_mm + kBallChords * planned_gouge(mm, taken, kBallChords) <=
            (1 - kProof) * mm;
   });
 }
 
 double least_allowance(const Taken& taken) {
-  return least_that(taken.words_mm, [&](double mm) {
+  return told_that_does(taken.words_mm, kStepUp, INFINITY, [&](double mm) {
     return taken.words_mm + taken.turns_mm + stock_chords(mm, taken) <= (1 - path::kAskedStock) * mm;
   });
 }

@@ -22,9 +22,8 @@ constexpr std::pair<std::string_view, std::string_view> kExplanations[] = {
      "Pivots and travels that nobody measured may be wrong. The pages list them; `toothpath machine test` writes a "
      "program that proves them in air"},
     {"--tolerance",
-     "How far the flank may be off its form, all causes together. The program takes up to three quarters of it; "
-     "class A "
-     "of ISO 1328-1 allows (0.55 m + 5) sqrt(2)^(A - 5) um"},
+     "How far the flank may be off its form, all causes together. The program takes up to four fifths of it; "
+     "class A of ISO 1328-1 allows (0.55 m + 5) sqrt(2)^(A - 5) um"},
     {"--coolant", "What the control can switch on, by its machine file"},
     {"--blank-top", "Fixture and blank together. Where you are free, \"any\" leaves the most room in the travels"},
     {"--teeth", "Of the gear that is cut here, not of its mate"},

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/base/refusals.h"
+
 namespace toothpath::ball {
 namespace {
 
@@ -123,15 +125,11 @@ class RoughingPlanner {
     const auto many = [&](double down, double over) { return *points * passes(down, over) > double(kMostPlaces); };
     const double down = o_.step_down_mm, over = o_.step_over_mm, most = 2 * o_.ball_radius_mm;
     if (!many(down, over)) return {};
-    const auto least = [&](double from, const auto& makes_many) {
-      double step = told_upwards(from);
-      while (step < most && makes_many(step)) step = told_upwards(kStepUp * step);
-      return step;
-    };
     const bool lower = down <= over;
-    const double alone = lower ? least(down, [&](double step) { return many(step, over); })
-                               : least(over, [&](double step) { return many(down, step); });
-    const double both = least(std::max(down, over), [&](double step) { return many(step, step); });
+    const double alone = lower ? told_that_does(down, kStepUp, most, [&](double step) { return !many(step, over); })
+                               : told_that_does(over, kStepUp, most, [&](double step) { return !many(down, step); });
+    const double both =
+        told_that_does(std::max(down, over), kStepUp, most, [&](double step) { return !many(step, step); });
     std::string help = both < most ? fmt::format("{:g} mm for both does", both) : "a larger ball may";
     if (alone < most)
       help = fmt::format("{} = {:g} mm or more does{}", lower ? "step_down" : "step_over", alone,
@@ -143,12 +141,6 @@ class RoughingPlanner {
   }
 
  private:
-  /// Upwards to two digits, as it is printed.
-  [[nodiscard]] static double told_upwards(double mm) {
-    const double digit = std::pow(10.0, std::floor(std::log10(mm)) - 1);
-    return std::ceil(mm / digit - 1e-9) * digit;
-  }
-
   /// Between which ends, over which bottom.
   void stand() {
     const auto& ring = sheet_.space().outline();

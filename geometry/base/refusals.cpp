@@ -24,6 +24,18 @@ std::optional<double> that_does(double from, double to, const std::function<bool
   }
   return {};
 }
+
+double told_upwards(double value) {
+  const double digit = std::pow(10.0, std::floor(std::log10(value)) - 1);
+  return std::ceil(value / digit - 1e-9) * digit;
+}
+
+double told_that_does(double from, double ratio, double most, const std::function<bool(double)>& does) {
+  double told = told_upwards(from);
+  while (told < most && !does(told)) told = told_upwards(ratio * told);
+  return told;
+}
+
 namespace {
 
 constexpr double kMostLength = 1e5, kMostHelixAngle = 60;  // mm, deg

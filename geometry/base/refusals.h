@@ -19,6 +19,12 @@ namespace toothpath {
 /// halving. Nothing where it admits none of them.
 [[nodiscard]] std::optional<double> that_does(double from, double to, const std::function<bool(double)>& does);
 
+/// Upwards to two digits, as a message says it. `value` is above 0.
+[[nodiscard]] double told_upwards(double value);
+/// Up from `from` in numbers of two digits, by `ratio` at a time: the first that a test admits. Where none below `most`
+/// does, the first that is not below it.
+[[nodiscard]] double told_that_does(double from, double ratio, double most, const std::function<bool(double)>& does);
+
 class Refusals {
  public:
   std::vector<Refusal> refusals;
