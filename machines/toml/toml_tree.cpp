@@ -97,6 +97,9 @@ class DepthCheck {
   bool long_string_ = false, comment_ = false;
 };
 
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
 /// The library would name a NUL byte as a character of TOML that is not allowed; what it means is that the file is no
 /// text.
 Status check_nul(std::string_view text, const std::string& file) {
@@ -108,27 +111,88 @@ Status check_nul(std::string_view text, const std::string& file) {
   return fail_at({file, static_cast<int>(line), static_cast<int>(column)}, "NUL byte; this is not a text file");
 }
 
+/// Saved by an editor of Windows as what it calls Unicode.
+Status check_utf16(std::string_view text, const std::string& file) {
+  if (!text.starts_with("\xff\xfe") && !text.starts_with("\xfe\xff")) return Ok{};
+  return fail_at({file, 1, 1}, "this text is UTF-16; save it as UTF-8");
+}
+
+/// The first line that says something is that of an NC program.
+bool begins_as_program(std::string_view text) {
+  const auto begin = text.find_first_not_of(" \t\r\n");
+  if (begin == std::string_view::npos) return false;
+  const std::string_view rest = text.substr(begin);
+  const auto word = [&](char letter) { return rest[0] == letter && rest.size() > 1 && is_digit(rest[1]); };
+  return rest[0] == '%' || rest[0] == '(' || rest[0] == ';' || word('O') || word('G') || word('N') ||
+         rest.starts_with("0 BEGIN PGM") || rest.starts_with("PARTNO");
+}
+
 SourcePosition position_of(const ::toml::source_region& region, const std::string& file) {
   return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
-/// `key = word`: what the library says of it is about truth values or numbers; what is missing are the quotes.
-std::optional<Diagnostic> unquoted_word(std::string_view text, const SourcePosition& at) {
+/// What stands behind the equals sign of a line, where the place of an error lies in it.
+struct Written {
+  std::string_view value;  ///< up to a comment, without blanks at its ends
+  int column = 1;
+};
+std::optional<Written> value_at(std::string_view text, const SourcePosition& at) {
   for (int line = 1; line < at.line; ++line) text.remove_prefix(std::min(text.size(), text.find('\n') + 1));
   const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
   const auto equals = line.find('=');
   if (equals == std::string_view::npos || line.find_first_of("\"'#") < equals) return std::nullopt;
   const auto begin = line.find_first_not_of(" \t", equals + 1);
   if (begin == std::string_view::npos || at.column <= static_cast<int>(begin)) return std::nullopt;
-  const std::string_view rest = line.substr(begin), word = rest.substr(0, rest.find_first_of(" \t#"));
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-  const auto of_word = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '.' || c == '-'; };
+  const std::string_view rest = line.substr(begin), value = rest.substr(0, rest.find('#'));
+  return Written{value.substr(0, value.find_last_not_of(" \t") + 1), static_cast<int>(begin) + 1};
+}
+
+/// `key = word`: what the library says of it is about truth values or numbers; what is missing are the quotes.
+std::optional<std::string> unquoted_word(std::string_view value) {
+  const std::string_view word = value.substr(0, value.find_first_of(" \t"));
+  const auto of_word = [](char c) { return is_letter(c) || is_digit(c) || c == '.' || c == '-'; };
   constexpr std::size_t kLongest = 60;
-  for (const std::string_view value : {"true", "false", "inf", "nan"})
-    if (word == value) return std::nullopt;  // what is wrong is something else
-  if (!letter(word.front()) || word.size() > kLongest || !std::all_of(word.begin(), word.end(), of_word))
+  for (const std::string_view known : {"true", "false", "inf", "nan"})
+    if (word == known) return std::nullopt;  // what is wrong is something else
+  if (word.empty() || !is_letter(word.front()) || word.size() > kLongest ||
+      !std::all_of(word.begin(), word.end(), of_word))
     return std::nullopt;
-  return fail_at({at.file, at.line, static_cast<int>(begin) + 1}, "{0} is text and stands in quotes: \"{0}\"", word);
+  return fmt::format("{0} is text and stands in quotes: \"{0}\"", word);
+}
+
+/// `key = 2,5` and `key = 2 mm`: the library names the character that it did not expect.
+std::optional<std::string> number_of_a_shop(std::string_view value) {
+  std::size_t end = 0;
+  while (end < value.size() && (is_digit(value[end]) || (end == 0 && (value[end] == '-' || value[end] == '+')) ||
+                                value[end] == '.' || value[end] == ','))
+    ++end;
+  std::string number(value.substr(0, end));
+  const std::string_view behind = value.substr(std::min(value.size(), value.find_first_not_of(" \t", end)));
+  const auto commas = std::count(number.begin(), number.end(), ','),
+             points = std::count(number.begin(), number.end(), '.');
+  if (value.starts_with(',') || !std::any_of(number.begin(), number.end(), is_digit) || commas + points > 1 ||
+      !is_digit(number.back()))
+    return std::nullopt;
+  const bool unit = !behind.empty() && (is_letter(behind.front()) || behind.front() == '%' ||
+                                        static_cast<unsigned char>(behind.front()) > 0x7f);
+  constexpr std::size_t kLongestUnit = 8;
+  if (!behind.empty() && (!unit || behind.size() > kLongestUnit || number == "0" ||
+                          behind.find_first_of(" \t,_0123456789") != std::string_view::npos))
+    return std::nullopt;
+  if (unit) return fmt::format("{} has a unit; write the number alone, in the unit of the key", value);
+  if (commas == 0) return std::nullopt;
+  std::replace(number.begin(), number.end(), ',', '.');
+  return fmt::format("{} has a decimal comma; write a decimal point: {}", value, number);
+}
+
+/// Mistakes that are told in other words than those of the library.
+std::optional<Diagnostic> usual_mistake(std::string_view text, const SourcePosition& at) {
+  const std::optional<Written> written = value_at(text, at);
+  if (!written) return std::nullopt;
+  auto told = number_of_a_shop(written->value);
+  if (!told) told = unquoted_word(written->value);
+  if (!told) return std::nullopt;
+  return fail_at({at.file, at.line, written->column}, "{}", *told);
 }
 
 /// Copies nodes of the library; remembers the first that lies too deep.
@@ -199,6 +263,7 @@ std::optional<double> TomlValue::number() const {
 }
 
 Result<TomlValue> parse_toml(std::string_view text, const std::string& file, const TomlSyntax& syntax) {
+  if (const Status one_byte = check_utf16(text, file); !one_byte) return one_byte.error();
   if (!syntax.one_line_strings)
     if (const Status text_only = check_nul(text, file); !text_only) return text_only.error();
   if (const Status bounded = DepthCheck(text, file, syntax).run(); !bounded) return bounded.error();
@@ -212,7 +277,10 @@ Result<TomlValue> parse_toml(std::string_view text, const std::string& file, con
     return root;
   } catch (const ::toml::parse_error& error) {
     const SourcePosition at = position_of(error.source(), file);
-    if (auto word = unquoted_word(text, at)) return std::move(*word);
+    if (begins_as_program(text))
+      return fail_at(
+          at, "this begins as an NC program, not as a job or a machine file: `check JOB PROGRAM` reads programs");
+    if (auto mistake = usual_mistake(text, at)) return std::move(*mistake);
     return fail_at(at, "{}", error.description());
   }
 }

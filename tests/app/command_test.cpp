@@ -372,6 +372,20 @@ TEST(CommandLine, ARunOnOneAndTwoThreadsGivesTheSameBytes) {
   EXPECT_EQ(one, two);
 }
 
+// The two files of `check` in the wrong order, or one of them twice.
+TEST(CommandLine, AJobIsNoProgramAndAProgramNoJob) {
+  const TestDir dir;
+  const std::string job = std::string(TOOTHPATH_SOURCE_DIR) + "/samples/spur_quick.toml",
+                    program = std::string(TOOTHPATH_SOURCE_DIR) + "/tests/golden/samples/spur_quick/linuxcnc.ngc";
+  const auto twice = run_program({"check", job, job, "--out", dir / "out"});
+  EXPECT_EQ(twice.exit_code, 3);
+  EXPECT_NE(twice.err.find("error: this is a job or a machine file, not an NC program"), std::string::npos)
+      << twice.err;
+  const auto swapped = run_program({"check", program, job, "--out", dir / "out"});
+  EXPECT_EQ(swapped.exit_code, 3);
+  EXPECT_NE(swapped.err.find("error: this begins as an NC program"), std::string::npos) << swapped.err;
+}
+
 TEST(CommandLine, FilesThatCannotBeReadAreFour) {
   const TestDir dir;
   EXPECT_EQ(run_program({"surface", dir / "missing.toml", "--out", dir / "out"}).exit_code, 4);

@@ -90,7 +90,7 @@ inline constexpr BadFile kBadMachineFiles[] = {
     {"4 1e400", "max = 36000.0", "max = 1e400",
      "m.toml:49:12: error: Error while parsing floating-point: '1e400' could not be interpreted as a value\n"},
     {"6 comma decimal", "max = 36000.0", "max = 36000,0",
-     "m.toml:49:12: error: Error while parsing key-value pair: expected a comment or whitespace, saw ','\n"},
+     "m.toml:49:7: error: 36000,0 has a decimal comma; write a decimal point: 36000.0\n"},
     {"8 int overflow", "max = 36000.0", "max = 9223372036854775808",
      "m.toml:49:26: error: Error while parsing decimal integer: '9223372036854775808' is not representable in 64 "
      "bits\n"},

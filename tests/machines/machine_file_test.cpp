@@ -206,6 +206,48 @@ TEST(TomlText, AWordWithoutQuotesIsTold) {
   }
 }
 
+// Decimal commas and units, in the words of who wrote them; what is no such number keeps the message of the library.
+TEST(TomlText, ADecimalCommaOrAUnitIsTold) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"[gear]\nmodule = 2,5\n", "t:2:10: error: 2,5 has a decimal comma; write a decimal point: 2.5"},
+      {"a = -0,25  # offset", "t:1:5: error: -0,25 has a decimal comma; write a decimal point: -0.25"},
+      {"a = 2 mm", "t:1:5: error: 2 mm has a unit; write the number alone, in the unit of the key"},
+      {"a = 0.002mm # fine", "t:1:5: error: 0.002mm has a unit; write the number alone, in the unit of the key"},
+      {"a = 2,5 mm", "t:1:5: error: 2,5 mm has a unit; write the number alone, in the unit of the key"},
+      {"a = 20\u00b0", "t:1:5: error: 20\u00b0 has a unit; write the number alone, in the unit of the key"},
+      {"a = 20 %", "t:1:5: error: 20 % has a unit; write the number alone, in the unit of the key"},
+  };
+  for (const auto& [text, message] : cases) {
+    const auto tree = toml::parse_toml(text, "t", {});
+    ASSERT_FALSE(tree) << text;
+    EXPECT_EQ(tree.error().text(), message);
+  }
+  for (const std::string text : {"a = 1.2.3", "a = 1,2,3", "a = 1.234,5", "a = 1, b", "a = [1,5 2]", "a = 1 2",
+                                 "a = ,5 x", "a = 1,", "a = 1 b = 2", "a = 0xg", "a = 0b2", "a = 1_", "a = 1 \"mm\""}) {
+    const auto tree = toml::parse_toml(text, "t", {});
+    ASSERT_FALSE(tree) << text;
+    EXPECT_EQ(tree.error().text().find("decimal comma"), std::string::npos) << tree.error().text();
+    EXPECT_EQ(tree.error().text().find("has a unit"), std::string::npos) << tree.error().text();
+  }
+}
+
+TEST(TomlText, AnotherKindOfFileIsTold) {
+  const auto message = [](const std::string& text) {
+    const auto tree = toml::parse_toml(text, "t", {});
+    return tree ? std::string("read") : tree.error().text();
+  };
+  EXPECT_EQ(message(std::string("\xff\xfe"
+                                "a\0=\0",
+                                6)),
+            "t:1:1: error: this text is UTF-16; save it as UTF-8");
+  EXPECT_EQ(message(std::string("\xfe\xff\0a", 4)), "t:1:1: error: this text is UTF-16; save it as UTF-8");
+  for (const char* text : {"%\nO1001 (PART)\n", "(JOB PART)\nG21\n", ";JOB\nG17 G40\n", "0 BEGIN PGM PART MM\n",
+                           "\nG21 G90\n", "N10 G0 X1\n", "PARTNO / PART\n"})
+    EXPECT_NE(message(text).find("error: this begins as an NC program"), std::string::npos) << text << message(text);
+  EXPECT_EQ(message("G1 = 2").find("NC program"), std::string::npos);
+  EXPECT_EQ(message("gear 2").find("NC program"), std::string::npos);
+}
+
 class BadMachineFile : public testing::TestWithParam<test::BadFile> {};
 
 TEST_P(BadMachineFile, IsRefusedWithItsPlace) {
