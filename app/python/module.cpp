@@ -100,11 +100,45 @@ std::vector<Grid> grids_of(const process::InspectedFlanks& flanks) {
   return out;
 }
 
-/// The gear of a job file; plans nothing.
+/// A value as a job file says it, on one line.
+std::string toml_of(const py::handle& value) {
+  const auto joined = [](const auto& items, const char* open, const char* close, const auto& text) {
+    std::string out;
+    for (const auto& item : items) out += (out.empty() ? "" : ", ") + text(item);
+    return open + out + close;
+  };
+  const auto said = [](const py::handle& text) {
+    return py::module_::import("json").attr("dumps")(text, "ensure_ascii"_a = false).cast<std::string>();
+  };
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
+  if (PyIndex_Check(value.ptr()))
+    return py::repr(py::int_(py::reinterpret_borrow<py::object>(value))).cast<std::string>();
+  if (py::isinstance<py::float_>(value)) return py::repr(py::float_(value.cast<double>())).cast<std::string>();
+  if (py::isinstance<py::str>(value)) return said(value);
+  if (py::isinstance<py::dict>(value))
+    return joined(value.cast<py::dict>(), "{", "}",
+                  [&](const auto& entry) { return said(py::str(entry.first)) + " = " + toml_of(entry.second); });
+  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value))
+    return joined(value.cast<py::sequence>(), "[", "]", [](const auto& item) { return toml_of(item); });
+  throw py::type_error(fmt::format("a job holds text, numbers, truth values, lists and dicts, not {}",
+                                   py::repr(py::type::of(value)).cast<std::string>()));
+}
+
+/// A dict as a job file, a key a line. What names a schema or a job may be left out.
+std::string job_text_of(const py::dict& job) {
+  std::string text;
+  if (!job.contains("schema")) text += "schema = 1\n";
+  if (!job.contains("name")) text += "name = \"gear\"\n";
+  for (const auto& [key, value] : job)
+    text += fmt::format("{} = {}\n", py::str(key).cast<std::string>(), toml_of(value));
+  return text;
+}
+
+/// The gear of a job; plans nothing.
 class Gear {
  public:
-  explicit Gear(const std::filesystem::path& file)
-      : job_(value_or_raise(job::read_job_file(file.string()))), gear_(value_or_raise(flow::make_process(job_))) {}
+  explicit Gear(const std::filesystem::path& file) : Gear(value_or_raise(job::read_job_file(file.string()))) {}
+  explicit Gear(const py::dict& job) : Gear(value_or_raise(job::parse_job(job_text_of(job), "dict"))) {}
   Gear(const Gear&) = delete;  // the gear refers to its job
   Gear& operator=(const Gear&) = delete;
 
@@ -119,6 +153,8 @@ class Gear {
   }
 
  private:
+  explicit Gear(job::Job job) : job_(std::move(job)), gear_(value_or_raise(flow::make_process(job_))) {}
+
   job::Job job_;
   std::unique_ptr<process::GearProcess> gear_;
 };
@@ -274,7 +310,11 @@ PYBIND11_MODULE(toothpath, m) {
       "A file cannot be read or written. `diagnostics` as of RefusedError.";
   add_surface(m);
   add_report(m);
-  py::class_<Gear>(m, "Gear", "The gear of a job file. Raises RefusedError or FileAccessError.")
+  py::class_<Gear>(
+      m, "Gear",
+      "The gear of a job: a file, or a dict with the same keys, Gear({\"gear\": {\"type\": ..}}); files that "
+      "a dict names lie in the current directory. Raises RefusedError or FileAccessError.")
+      .def(py::init<const py::dict&>(), "job"_a)
       .def(py::init<const std::filesystem::path&>(), "job"_a)
       .def_property_readonly("name", &Gear::name)
       .def_property_readonly("type", &Gear::type, "as job files say it: \"face_gear\"")

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import threading
+import tomllib
 
 import matplotlib
 import numpy as np
@@ -130,6 +131,27 @@ assert toothpath.run(quick, out).verified
 bevel = samples / "bevel_pinion.toml"
 subprocess.run([program, "surface", bevel, "--out", folder / "bevel", "--quiet"], check=True)
 compare_flanks(bevel, folder / "bevel" / "inspection.csv")
+# The same gear from a dict: a sweep without files. What is wrong is told with the same words.
+numbers = tomllib.loads(quick.read_text())
+from_dict = toothpath.Gear(numbers)
+assert from_dict.name == toothpath.Gear(quick).name and from_dict.limits == toothpath.Gear(quick).limits
+for a, b in zip(from_dict.flanks(), toothpath.Gear(quick).flanks(), strict=True):
+    assert np.array_equal(a.points, b.points)
+alone = {"gear": numbers["gear"]}
+for teeth in np.arange(60, 62):
+    alone["gear"]["teeth"] = teeth
+    assert toothpath.Gear(alone).teeth == teeth
+try:
+    toothpath.Gear({"gear": {**numbers["gear"], "module": "two"}})
+    raise AssertionError("a module of letters")
+except toothpath.RefusedError as refused:
+    assert "module must be a number, not a string" in str(refused), refused
+try:
+    toothpath.Gear({"gear": {1, 2}})
+    raise AssertionError("a set")
+except TypeError as refused:
+    assert "not <class 'set'>" in str(refused), refused
+
 assert {flank.side for flank in toothpath.Gear(bevel).flanks()} == {"L", "U"}
 
 # A program that is not verified is a report without a program.
