@@ -67,7 +67,7 @@ std::string GearboxWriter::feed(double value) const {
 void GearboxWriter::remarks() {
   out_ += comment("gear shaper with electronic gearbox, machine " + s_.machine.name);
   for (const auto& name : s_.machine.assumed_keys) out_ += comment("assumed, confirm before cutting: " + name);
-  out_ += comment("all words are machine coordinates: no work offset may be active");
+  out_ += comment("all words are machine coordinates: " + zero_offsets());
   out_ += comment(fmt::format("cutter {} teeth, work {} teeth, sense {:+}", s_.cutter_teeth, s_.work_teeth, s_.sense));
   out_ += comment(
       fmt::format("{} double strokes/min, {} infeed, {} one turn", s_.strokes_set, s_.strokes_infeed, s_.strokes_turn));

@@ -35,6 +35,8 @@ class GearboxWriter {
  protected:
   /// Safe start, with the job's name.
   virtual void begin() = 0;
+  /// What must be 0 so that all words are machine coordinates.
+  [[nodiscard]] virtual std::string zero_offsets() const = 0;
   /// Rapid of the infeed slide in machine coordinates.
   [[nodiscard]] virtual std::string clear_block(const std::string& x) const = 0;
   /// A word of cutter or work.

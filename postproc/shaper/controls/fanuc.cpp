@@ -23,8 +23,9 @@ class FanucWriter : public GearboxWriter {
   void begin() override {
     line("%");
     out_ += "O2001 " + comment(std::string_view(s_.job_name).substr(0, 30));
-    line("G21 G17 G90 G94 G40 G49 G80 G69");
+    line("G21 G17 G90 G94 G40 G49 G80 G69 G54");
   }
+  [[nodiscard]] std::string zero_offsets() const override { return "G54 and EXT must be 0 in every axis"; }
   [[nodiscard]] std::string clear_block(const std::string& x) const override { return "G53 G0 X" + x; }
   [[nodiscard]] std::string turn_word(const std::string& axis, const std::string& number) const override {
     return axis + number;

@@ -22,7 +22,7 @@ class FanucGearbox : public GearboxReader {
     if (percents_ != 2) problem("the program does not stand between two %");
   }
   [[nodiscard]] std::vector<std::string_view> safe_start() const override {
-    return {"G21", "G17", "G90", "G94", "G40", "G49", "G80", "G69"};
+    return {"G21", "G17", "G90", "G94", "G40", "G49", "G80", "G69", "G54"};
   }
   /// X5. with its point.
   [[nodiscard]] std::optional<MotionWord> split(std::string_view word) const override {

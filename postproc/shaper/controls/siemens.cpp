@@ -17,6 +17,7 @@ class SiemensWriter : public GearboxWriter {
     out_ += comment(s_.job_name);
     line("G17 G40 G90 G94 G710 G64 G500");
   }
+  [[nodiscard]] std::string zero_offsets() const override { return "the basic frames must be 0 in every axis (G500)"; }
   [[nodiscard]] std::string clear_block(const std::string& x) const override { return "SUPA G0 X" + x + " D0"; }
   [[nodiscard]] std::string turn_word(const std::string& axis, const std::string& number) const override {
     return axis + "=" + number;
