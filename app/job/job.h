@@ -47,6 +47,8 @@ struct VerifySettings {
   std::optional<double> clearance_mm;  ///< least gap of neck, shank and holder; none: the program's default
   std::optional<double>
       unreached_mm;  ///< surface out of the finishing ball's reach may stand so high; none: it is told, no verdict
+  std::optional<double> form_tolerance_mm;  ///< of the flanks, as asked; what the report compares with
+  std::optional<int> iso_class;             ///< the same as a class of ISO 1328-1
 };
 
 /// The [program] table.

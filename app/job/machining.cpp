@@ -447,6 +447,11 @@ VerifySettings read_verify(toml::TableReader& table) {
   verify.all_teeth = table.word_or("teeth", {"one", "all"}, "one") == "all";
   verify.clearance_mm = table.optional_number("clearance", {0, 50, " mm"});
   verify.unreached_mm = table.optional_number("unreached", {0, 50, " mm"});
+  verify.form_tolerance_mm = table.optional_number("form_tolerance", {0, 1, " mm", true});
+  verify.iso_class = table.optional_integer("iso_class", {1, 11});
+  table.relate(toml::KeyRelation::Kind::needs, "iso_class", "form_tolerance");
+  if (verify.iso_class && !table.has("form_tolerance"))
+    table.refuse("iso_class", "iso_class needs form_tolerance: what the class is for the module of the gear, mm");
   table.finish();
   return verify;
 }
@@ -474,6 +479,7 @@ ProgramSettings read_program_settings(toml::TableReader& table) {
   program.text.stops = static_cast<text::Stops>(std::find(stops.begin(), stops.end(), stop) - stops.begin());
   if (table.word_or("stop_word", {"optional_stop", "block_skip"}, "optional_stop") == "block_skip")
     program.text.stop_word = text::StopWord::block_skip;
+  program.text.stop_at_first_cut = table.boolean_or("stop_at_first_cut", program.text.stop_at_first_cut);
   program.split_operations = table.word_or("split", {"none", "operations"}, "none") == "operations";
   program.teeth_per_program = table.optional_integer("teeth_per_program", kTeethPerProgram);
   if (program.teeth_per_program && table.has("split") && !program.split_operations)

@@ -8,13 +8,16 @@
 #include "app/tool_library/tool_library.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/printable.h"
 #include "geometry/inspection/table_text.h"
 #include "machines/toml/input_text.h"
 #include "machines/tool_check.h"
+#include "postproc/numbers/comment.h"
 
 namespace toothpath::job {
 namespace {
 
+constexpr std::size_t kMostOfName = 40;  // characters: T999999 and a remark of Fanuc's, in one line of 80
 constexpr toml::Range kToolLength{0, 2000, " mm", true};
 constexpr toml::Range kToolDiameter{0.01, 500, " mm"};
 constexpr std::size_t kMostMeridianBytes = 1 << 20;
@@ -100,6 +103,14 @@ void read_life(toml::TableReader& table, tool::ToolAssembly& tool) {
   else if (!table.has("life"))
     table.refuse("sisters", "sisters go on when tool {} is used up: state its life (minutes of cutting) too",
                  tool.number);
+}
+
+std::string read_shop_name(toml::TableReader& table, std::string_view key) {
+  auto name = table.optional_text(key).value_or("");
+  if (name.size() > kMostOfName)
+    table.refuse(key, "{} has {} characters, {} at most: it stands in a line of the program", key, name.size(),
+                 kMostOfName);
+  return name;
 }
 
 std::vector<std::string_view> kind_words() {
@@ -214,6 +225,10 @@ class LibrarySupply {
       return;
     }
     tool_ = std::move(*found);
+    if (!tool_->name.empty() && tool_->keys.find("name") == nullptr) {
+      const SourcePosition& at = table.where("library");
+      tool_->keys.entries.push_back({"name", at, {at, {numbers::first_words(printable(tool_->name), kMostOfName)}}});
+    }
     file_ = *name;
     check_unit(table, warnings);
     for (const toml::TomlEntry& said : tool_->keys.entries) compare(table, said, warnings);
@@ -290,6 +305,8 @@ tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& contex
   tool::ToolAssembly tool;
   tool.number = table.integer("number", kToolNumber).value_or(0);
   const LibrarySupply supply(table, context, tool.number, warnings);
+  tool.name = read_shop_name(table, "name");
+  tool.holder_name = read_shop_name(table, "holder_name");
   const auto type = table.variant("type", words);
   tool.shank_diameter_mm = table.number("shank_diameter", kToolDiameter).value_or(0);
   const auto length = table.number("length", kToolLength);

@@ -255,7 +255,11 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
   if (dialect && job.program.text.stops != text::Stops::none && dialect->write != nullptr)
     errors.push_back(
         fail_at(job.where("program.stop"), "stop: dialect \"{}\" has no word for it, leave it out", dialect->name));
-  if (dialect && job.program.text.restart_numbers && (dialect->write != nullptr || dialect->block_numbers))
+  if (dialect && job.program.text.stop_at_first_cut && dialect->write != nullptr)
+    errors.push_back(fail_at(job.where("program.stop_at_first_cut"),
+                             "stop_at_first_cut: dialect \"{}\" has no word for it, leave it out", dialect->name));
+  if (dialect && job.positions.contains("program.restart_numbers") && job.program.text.restart_numbers &&
+      (dialect->write != nullptr || dialect->block_numbers))
     errors.push_back(fail_at(job.where("program.restart_numbers"),
                              "restart_numbers: dialect \"{}\" has {}, leave it out", dialect->name,
                              dialect->block_numbers ? "a number in every block" : "no numbers of blocks"));

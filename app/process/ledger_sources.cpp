@@ -39,6 +39,15 @@ const char* help_against(proof::ErrorSource source) {
   return nullptr;
 }
 
+/// What the text grants the control in operations that no later one goes over.
+double last_blend(const readback::ReadBack& read, const joints::AxisProgram& program) {
+  double worst = 0;
+  for (const joints::AxisOperation& op : program.operations)
+    if (const auto found = read.blend_mm.find(op.operation); !op.wide_corners && found != read.blend_mm.end())
+      worst = std::max(worst, found->second);
+  return worst;
+}
+
 }  // namespace
 
 proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double measured_mm, std::string note) {
@@ -75,7 +84,7 @@ void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::
                          "records against the motions that were read back"));
   // In single precision, as the moves that are read back carry it.
   ledger.push_back(
-      entry(proof::ErrorSource::path_blending, double(float(blend_mm)), read.blend_mm,
+      entry(proof::ErrorSource::path_blending, double(float(blend_mm)), last_blend(read, program),
             blend_mm > 0 ? "the tolerance that the text grants the control" : "the text grants the control none"));
   if (program.check_uncertainty_mm > 0 || read.length_off_mm > 0)
     ledger.push_back(entry(proof::ErrorSource::tool_length, program.check_uncertainty_mm, read.length_off_mm,

@@ -24,6 +24,8 @@ constexpr std::size_t kMostBytes = std::size_t(1) << 30;
 constexpr std::size_t kMostParts = 999;
 constexpr double kLeastAxisBlend = 0.0001;  // deg: the last digit of a tolerance of the rotaries
 constexpr double kMostAxisBlend = 0.01;     // deg, where the contour tolerance is a share of what is left
+constexpr double kRoughingShare = 0.02;     // of an allowance: a fifth of it may go, most of that to the plan
+constexpr double kContourDigits = 1e4;      // of a tolerance: 0.1 um
 constexpr double kBlendShare = 0.15;        // of the gouge tolerance that the control may round corners by unasked
 
 /// The words of `pole`, in the order of PoleOption.
@@ -189,6 +191,13 @@ double largest_radius(const job::Job& job) {
   return radius;
 }
 
+/// What a rotary may be off beside a tip that is off by so much, deg; nothing: no tool has a ball to say.
+std::optional<double> lean_beside(double corner_mm, double most_deg, const job::Job& job) {
+  const double radius = largest_radius(job);
+  if (!(radius > 0)) return std::nullopt;
+  return std::max(kLeastAxisBlend, std::min(most_deg, degrees(corner_mm / (2 * radius))));
+}
+
 text::NcHeader header_of(const PostRequest& request, const std::vector<std::string>& assumed) {
   text::NcHeader header;
   header.job_name = request.title;
@@ -201,11 +210,21 @@ text::NcHeader header_of(const PostRequest& request, const std::vector<std::stri
   if (!request.blank) header.no_blank = "NO BLANK FOR THE GRAPHICS: THE GEAR AXIS IS NOT Z OF THE WORK OFFSET";
   header.blend_mm = request.contour_mm.value_or(narrow_contour(request));
   header.contour_granted = request.contour_mm.has_value();
-  if (const double radius = largest_radius(request.job); radius > 0) {
-    const double most = header.contour_granted ? kMostAxisBlend : header.blend_axis_deg;
-    header.blend_axis_deg = std::max(kLeastAxisBlend, std::min(most, degrees(header.blend_mm / (2 * radius))));
-  }
+  const double most = header.contour_granted ? kMostAxisBlend : header.blend_axis_deg;
+  header.blend_axis_deg = lean_beside(header.blend_mm, most, request.job).value_or(header.blend_axis_deg);
   return header;
+}
+
+/// What the text grants at corners; more where a later operation takes what they leave and the request says so.
+void note_corners(joints::AxisProgram& program, const text::NcDialect& dialect, const text::NcHeader& header,
+                  const PostRequest& request) {
+  for (joints::AxisOperation& op : program.operations) {
+    const double allowance = request.job.operations[static_cast<std::size_t>(op.operation)].allowance_mm;
+    const double mm = std::floor(kRoughingShare * allowance * kContourDigits) / kContourDigits;
+    if (request.wide_roughing && dialect.blend && mm > header.blend_mm)
+      op.wide_corners = {mm, lean_beside(mm, kMostAxisBlend, request.job).value_or(header.blend_axis_deg)};
+  }
+  text::note_corners(program, dialect, header);
 }
 
 /// The job states a contour tolerance that its control has no word for.
@@ -362,7 +381,7 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   posted.axes = std::move(program.value());
 
   const text::NcHeader header = header_of(request, assumed);
-  text::note_corners(posted.axes, *dialect, header);
+  note_corners(posted.axes, *dialect, header, request);
   if (posted.axes.corner_tolerance_mm > 0) estimate_times(posted.axes, machine);
   if (auto lasting = change_tools(job, machine, posted.axes)) return *lasting;
   if (text::divide_for_checks(posted.axes, job.program.text)) estimate_times(posted.axes, machine);
@@ -412,7 +431,16 @@ void discard_program(app::OutputDir& output) {
   });
 }
 
-Result<std::string> read_program_file(const std::string& path) { return toml::read_input_file(path, kMostBytes); }
+Result<std::string> read_program_file(const std::string& path) {
+  auto text = toml::read_input_file(path, kMostBytes);
+  if (!text) return text;
+  const bool first = text->starts_with("schema =");
+  const auto begin = first ? 0 : text->find("\nschema =");
+  if (begin == std::string::npos) return text;
+  const auto line = 1 + std::count(text->begin(), text->begin() + static_cast<std::ptrdiff_t>(begin + 1), '\n');
+  return fail_at({path, static_cast<int>(first ? 1 : line), 1},
+                 "this is a job or a machine file, not an NC program; `check JOB PROGRAM` takes the job first");
+}
 
 std::vector<joints::AxisRange> ranges_of(const readback::ReadBack& read, const machines::Machine& machine) {
   std::vector<joints::AxisRange> out;

@@ -63,6 +63,7 @@ struct PostRequest {
   joints::ClearanceBody body;                     ///< that links keep clear of
   std::optional<joints::ProgramRestart> restart;  ///< the file holds the program from there on
   std::optional<double> contour_mm = {};          ///< that the control is granted; none: the narrow one
+  bool wide_roughing = false;                     ///< operations that leave an allowance are granted a share of it
   std::optional<joints::GraphicsBlank> blank =
       std::nullopt;  ///< nothing: the part does not stand on Z of the work offset
 };

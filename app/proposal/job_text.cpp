@@ -426,6 +426,11 @@ std::string job_text(const Draft& draft, const LibraryWords& library, const std:
          (tolerance.widened ? "# This control counts coarsely: gouge_tolerance, scallop and left are wider than that.\n"
                             : "") +
          line("gouge_tolerance", real(tolerance.gouge), "a program that may cut deeper is not written") +
+         line("form_tolerance", real(tolerance_mm(draft.wishes.quality, draft.wishes.at(Quantity::module))),
+              "T: report.html tells what of it is taken") +
+         (draft.wishes.quality.iso_class
+              ? line("iso_class", fmt::format("{}", *draft.wishes.quality.iso_class), "of ISO 1328-1")
+              : std::string()) +
          line("teeth", "\"one\"", "or \"all\": every tooth space is walked through");
 }
 

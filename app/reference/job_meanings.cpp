@@ -166,6 +166,8 @@ constexpr Meaning kJobMeanings[] = {
     {"tool.library_unit",
      "Unit of the lengths for which that file states none. A tool table (.tbl) states none: left out, its lengths are "
      "mm, and it is refused where an .ini beside it, its remarks or its diameters speak of inches."},
+    {"tool.name", "What the shop calls the tool: stands in the program and on the pages."},
+    {"tool.holder_name", "The same of its holder."},
     {"tool.type", "Kind of cutter."},
     {"tool.diameter", "Diameter of the cutter; of a tapered one that of its ball."},
     {"tool.flute_length",
@@ -232,6 +234,11 @@ constexpr Meaning kJobMeanings[] = {
     {"verify.clearance", "Least gap of neck, shank and holder; left out: the program's own."},
     {"verify.unreached",
      "So high may surface stand that the finishing ball does not reach; left out: it is told and no verdict."},
+    {"verify.form_tolerance",
+     "Tolerance of the form of the flanks, as it is asked of the gear: report.html tells what of it is taken. No "
+     "verdict "
+     "depends on it."},
+    {"verify.iso_class", "Class of ISO 1328-1 whose profile form tolerance that is; the page tells which is reached."},
     {"program", "Numbers and order of the program."},
     {"program.number", "O number of the program; left out: made of the job's name."},
     {"program.tooth_order", "Teeth one after the other, or neighbours apart in time."},
@@ -254,10 +261,11 @@ constexpr Meaning kJobMeanings[] = {
     {"program.stop_word",
      "How the operator says whether it does: `optional_stop` is M1, `block_skip` is M0 in a block that a switch leaves "
      "out."},
+    {"program.stop_at_first_cut",
+     "`true`: the operator may stop the program behind every change of the tool, ahead of its first cut."},
     {"program.restart_numbers",
-     "`true`: N words where an operation and a written tooth begin, N1000, N1001 .., N2000 ..; Heidenhain numbers "
-     "every "
-     "block at any rate."},
+     "N words where an operation and a written tooth begin, N1000, N1001 .., N2000 ..; `false`: none. Heidenhain "
+     "numbers every block at any rate."},
     {"program.tilted_planes",
      "`true`: operations whose tool axis stands are written in tilted planes of the control, CYCLE800, PLANE SPATIAL "
      "or "

@@ -18,7 +18,8 @@ struct HolderSegment {
 };
 
 struct ToolAssembly {
-  int number = 0;  ///< T word
+  int number = 0;                 ///< T word
+  std::string name, holder_name;  ///< as the shop calls them; empty: not said
   CutterType type = CutterType::ball_end_mill;
   double diameter_mm = 0;      ///< of the ball; of a flat or bull nose mill that of the cutter; a finger mill has none
   double flute_length_mm = 0;  ///< tip to the end of the cutting part; shank above it

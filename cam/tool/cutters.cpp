@@ -113,7 +113,9 @@ bool turns_freely(const ToolAssembly& tool) {
 
 std::string cutter_text(const ToolAssembly& tool) {
   const CutterKind& kind = kind_of(tool);
-  return fmt::format("{}, {}", kind.name, kind.size(tool));
+  std::string names = tool.name;
+  if (!tool.holder_name.empty()) names += (names.empty() ? "holder " : ", holder ") + tool.holder_name;
+  return fmt::format("{}, {}{}", kind.name, kind.size(tool), names.empty() ? "" : fmt::format(" ({})", names));
 }
 
 std::string cutter_comment(const ToolAssembly& tool) {
@@ -122,6 +124,13 @@ std::string cutter_comment(const ToolAssembly& tool) {
   std::transform(name.begin(), name.end(), name.begin(),
                  [](char c) { return c >= 'a' && c <= 'z' ? char(c - 32) : c; });
   return name + " " + kind.short_size(tool);
+}
+
+std::vector<std::string> shop_names(const ToolAssembly& tool) {
+  std::vector<std::string> out;
+  if (!tool.name.empty()) out.push_back("NAME " + tool.name);
+  if (!tool.holder_name.empty()) out.push_back("HOLDER " + tool.holder_name);
+  return out;
 }
 
 std::optional<AptCutter> apt_cutter(const ToolAssembly& tool) {

@@ -51,10 +51,12 @@ struct CutterKind {
 /// Does it cut the same about the centre of its ball end however it leans? Ball mills whose flute is no wider.
 [[nodiscard]] bool turns_freely(const ToolAssembly& tool);
 
-/// "ball end mill, dia 1.6 mm".
+/// "ball end mill, dia 1.6 mm (R0.8 LONG, holder ER16)"; names only where the job has them.
 [[nodiscard]] std::string cutter_text(const ToolAssembly& tool);
 /// "BALL END MILL D1.6".
 [[nodiscard]] std::string cutter_comment(const ToolAssembly& tool);
+/// What the shop calls tool and holder: "NAME R2 LONG", "HOLDER ER16 X 70"; only what the job says.
+[[nodiscard]] std::vector<std::string> shop_names(const ToolAssembly& tool);
 
 /// A cutting part as cutter location data state it (ISO 4343, CUTTER/d,r,e,f,a,b,h): twice the distance from the axis
 /// to where lower and upper line meet, corner radius, its centre beside the axis and above the tip [mm], the lower line

@@ -402,7 +402,7 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
     d.smoothing_mm = *post.smoothing_tolerance_mm;
     d.smoothing_axis_rad = post.smoothing_axis_tolerance_rad;
     d.blend = false;
-    std::erase_if(d.start, [](const std::string& line) { return line.find("{blend}") != std::string::npos; });
+    std::erase(d.start, "{corners}");
   }
   d.own_start = post.own_lines.start;
   d.own_between_teeth = post.own_lines.between_teeth;

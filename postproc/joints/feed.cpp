@@ -170,15 +170,25 @@ void ToothBuilder::push_feed(const machines::TablePose& target, const RotaryPair
   broken_ = false;
 }
 
+/// The greatest F that a control takes has no unit: turns of so many deg keep it in deg/min.
+double ToothBuilder::turn_minutes(double turned_deg) const {
+  return job_.machine.max_cutting_feed > 0 ? turned_deg / job_.machine.max_cutting_feed : 0;
+}
+
 /// Time of a block that was pushed behind `before`: the longest of what feed, axes and control ask for. With TCP its
 /// feed word and axis too.
 void ToothBuilder::set_time(AxisBlock& pushed, const AxisBlock& before, double feed) {
   const AxisBlock b = pushed;
   const machines::Joints from = words_.joints(before), to = words_.joints(b);
-  const double tip_path = (words_.tip(b) - words_.tip(before)).norm();
+  const double tip_path = (words_.tip(b) - words_.tip(before)).norm(),
+               turned =
+                   degrees(std::hypot(to.rotary_rad[0] - from.rotary_rad[0], to.rotary_rad[1] - from.rotary_rad[1]));
+  const bool stands = b.words[0] == before.words[0] && b.words[1] == before.words[1] && b.words[2] == before.words[2];
   const machines::Machine& machine = job_.machine;
   double times[kTimeTerms] = {tip_path / feed,
-                              machine.max_cutting_feed > 0 ? tip_path / machine.max_cutting_feed : 0,
+                              tcp_ && stands                 ? turn_minutes(turned)
+                              : machine.max_cutting_feed > 0 ? tip_path / machine.max_cutting_feed
+                                                             : 0,
                               0,
                               0,
                               machine.min_block_ms / 60000,
@@ -201,9 +211,6 @@ void ToothBuilder::set_time(AxisBlock& pushed, const AxisBlock& before, double f
     return;
   }
   if (!tcp_) return;
-  const double turned =
-      degrees(std::hypot(to.rotary_rad[0] - from.rotary_rad[0], to.rotary_rad[1] - from.rotary_rad[1]));
-  const bool stands = b.words[0] == before.words[0] && b.words[1] == before.words[1] && b.words[2] == before.words[2];
   pushed.per_minute = (stands ? turned : tip_path) / pushed.minutes;
   pushed.axis = chain_.forward(to, words_.length()).axis;
 }

@@ -406,6 +406,7 @@ class ProgramBuilder {
     op.tool_number = tool.number;
     op.tool_length_mm = tool.length_mm;
     op.tool_name = tool::cutter_comment(tool);
+    op.shop_names = tool::shop_names(tool);
     op.cutter = tool::apt_cutter(tool);
     op.spindle_rpm = path.spindle_rpm;
     builder.begin(op, tool.length_mm);

@@ -140,6 +140,11 @@ struct ToothBlocks {
   [[nodiscard]] const std::vector<AxisBlock>& all(std::vector<AxisBlock>& room) const;
 };
 
+/// How far a control may leave the path of one operation: the tip, and every rotary with TCP.
+struct CornerGrant {
+  double mm = 0, axis_deg = 0;
+};
+
 /// Run time over all teeth.
 struct TimedMinutes {
   double feed = 0, rapid = 0;
@@ -150,12 +155,15 @@ struct AxisOperation {
   std::string type;
   int tool_number = 0;
   double tool_length_mm = 0;
-  std::string tool_name;                  ///< for the header comment
+  std::string tool_name;                  ///< what cutter it is, for the header comment
+  std::vector<std::string> shop_names;    ///< what the shop calls tool and holder, for comments
   std::optional<tool::AptCutter> cutter;  ///< for cutter location data
   double spindle_rpm = 0;
-  std::vector<ToothBlocks> teeth;  ///< one entry in a loop, else one a tooth in the order of the program
-  int first_place = 0;             ///< where the order begins; not 0 only where the operation stands here in part
-  int end_place = -1;              ///< behind its last place; -1: the order ends
+  std::optional<CornerGrant> wide_corners;  ///< a later operation takes what these leave; none: those of the program
+  double corner_tolerance_mm = 0;           ///< what `wide_corners` makes of AxisProgram::corner_tolerance_mm; 0: that
+  std::vector<ToothBlocks> teeth;           ///< one entry in a loop, else one a tooth in the order of the program
+  int first_place = 0;  ///< where the order begins; not 0 only where the operation stands here in part
+  int end_place = -1;   ///< behind its last place; -1: the order ends
   double feed_minutes = 0, rapid_minutes = 0;  ///< over all teeth
   TimedMinutes accelerated;           ///< the same with the accelerations of the axes, where the machine states them
   std::vector<double> tooth_minutes;  ///< .. and of every entry of `teeth` what its G1 take

@@ -65,6 +65,11 @@ timing::PathControl control_of(const AxisProgram& program, const machines::Machi
   control.tolerance_mm = program.corner_tolerance_mm;
   return control;
 }
+timing::PathControl control_of(const AxisProgram& program, const AxisOperation& op, const machines::Machine& machine) {
+  timing::PathControl control = control_of(program, machine);
+  if (op.corner_tolerance_mm > 0) control.tolerance_mm = op.corner_tolerance_mm;
+  return control;
+}
 
 std::vector<double> walk(Walk& place, const std::vector<AxisBlock>& blocks, const timing::PathControl& control,
                          const machines::Machine& machine) {
@@ -131,14 +136,14 @@ std::size_t time_operation(AxisProgram& program, AxisOperation& op, std::optiona
     const std::vector<AxisBlock>& blocks = tooth.all(room);
     if (blocks.empty()) continue;
     place.stand(stands ? *stands : place.end_of(blocks.front()));
-    const auto first = walk(place, blocks, control_of(program, machine), machine);
+    const auto first = walk(place, blocks, control_of(program, op, machine), machine);
     auto times = first;
     if (copies > 1) {
       // In a loop the other teeth begin where the one before has ended, a pitch behind.
       machines::Joints behind = place.at();
       behind.rotary_rad[index_rotary] -= pitch_rad;
       place.stand(behind);
-      times = walk(place, blocks, control_of(program, machine), machine);
+      times = walk(place, blocks, control_of(program, op, machine), machine);
     }
     op.tooth_minutes.push_back(std::max(cutting_minutes(blocks, first), cutting_minutes(blocks, times)));
     for (std::size_t i = 0; i < times.size(); ++i) {

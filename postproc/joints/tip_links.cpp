@@ -290,7 +290,7 @@ void ToothBuilder::push_turn_block(const RotaryPair& rotaries) {
   const machines::Joints p = words_.joints(from), q = words_.joints(b);
   const double turned = degrees(std::hypot(q.rotary_rad[0] - p.rotary_rad[0], q.rotary_rad[1] - p.rotary_rad[1]));
   AxisBlock& pushed = blocks_->back();
-  pushed.minutes = std::max({times.linear, times.rotary, job_.machine.min_block_ms / 60000});
+  pushed.minutes = std::max({times.linear, times.rotary, job_.machine.min_block_ms / 60000, turn_minutes(turned)});
   pushed.per_minute = turned / pushed.minutes;
   last_ = pushed;
   operation_->rapid_minutes += pushed.minutes * copies();

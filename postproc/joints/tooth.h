@@ -135,6 +135,7 @@ class ToothBuilder {
                    const machines::TablePose& to, double axis_error);
   void push_feed(const machines::TablePose& to, const RotaryPair& rotaries, double feed);
   void set_time(AxisBlock& pushed, const AxisBlock& before, double feed);
+  [[nodiscard]] double turn_minutes(double turned_deg) const;
 
   const AxisJob& job_;
   const machines::KinematicChain& chain_;

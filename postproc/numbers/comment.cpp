@@ -1,5 +1,7 @@
 #include "postproc/numbers/comment.h"
 
+#include <algorithm>
+
 namespace toothpath::numbers {
 namespace {
 
@@ -26,6 +28,26 @@ std::string comment_text(std::string_view text) {
     else out += c;
     if (of_two) ++at;
   }
+  return out;
+}
+
+std::string first_words(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return std::string(text);
+  const auto blank = text.find_last_of(' ', most);
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80U) --most;  // a letter of several bytes
+  const std::string_view kept = text.substr(0, blank == std::string_view::npos || blank == 0 ? most : blank);
+  return std::string(kept.substr(0, kept.find_last_not_of(" ,;-") + 1));
+}
+
+std::vector<std::string> lines_of_words(std::string_view text, std::size_t most) {
+  std::vector<std::string> out;
+  do {
+    const std::size_t kept = most < text.size() ? text.find_last_of(' ', most) : text.size();
+    const std::size_t end = kept == std::string_view::npos || kept == 0 ? std::max<std::size_t>(most, 1) : kept;
+    out.emplace_back(text.substr(0, end));
+    text.remove_prefix(std::min(text.size(), end));
+    text.remove_prefix(std::min(text.size(), text.find_first_not_of(' ')));
+  } while (!text.empty());
   return out;
 }
 

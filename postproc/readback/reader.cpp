@@ -421,7 +421,9 @@ class ReadBackRun {
   void note_blend(const ExecutedMove& m) {
     if (!m.rapid)
       result_.length_off_mm = std::max(result_.length_off_mm, readback::length_off_mm(m, control_.tool_check));
-    if (!m.rapid) result_.blend_mm = std::max({result_.blend_mm, double(m.blend_mm), double(m.corner_path_mm)});
+    if (m.rapid) return;
+    double& worst = result_.blend_mm[m.operation];
+    worst = std::max({worst, double(m.blend_mm), double(m.corner_path_mm)});
   }
 
   std::string_view text_;

@@ -205,8 +205,8 @@ struct ReadBack {
     int tool = 0, line = 0;  ///< where its life ends
   };
   std::vector<WornOut> worn_out;  ///< of these, those that cut for longer
-  double blend_mm =
-      0;  ///< largest tolerance of path blending in the feeds of `operations`, of all teeth where they are no copies
+  /// Largest tolerance of path blending in the feeds of every operation, of all teeth where they are no copies.
+  std::map<int, double> blend_mm;
   double length_off_mm = 0;  ///< the same of the lengths that checks of the tools have measured
   int mixed_rapid = 0;  ///< line of the first rapid that moves more than one group of axes, of all executed moves; 0:
                         ///< none does, or cutter locations

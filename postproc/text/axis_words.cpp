@@ -43,7 +43,8 @@ void NcAxisWords::print(const joints::AxisBlock& b, std::size_t axis, IndexWord 
 void NcAxisWords::shifted_number(std::size_t axis, std::int64_t word) {
   std::string& text = out_.text();
   text += dialect_.loop.index;
-  if (word >= 0 && !dialect_.sign_always) text += '+';
+  if (word == 0) return;
+  if (word > 0 && !dialect_.sign_always) text += '+';
   out_.number(word, decimals(axis));
 }
 

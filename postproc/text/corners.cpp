@@ -40,9 +40,11 @@ CornerWords way_words(const joints::AxisProgram& program, const NcDialect& diale
 
 }  // namespace
 
-CornerWords corner_words(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
+CornerWords corner_words(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header,
+                         const joints::AxisOperation* op) {
   CornerWords out;
   out.blend_mm = header.blend_mm;
+  out.axis_deg = rounded_down(header.blend_axis_deg, kAxisDigits);
   if (!dialect.blend) {
     out.granted_mm = std::max({dialect.exact_path_mm, dialect.corner_mm, dialect.smoothing_mm});
     out.granted_rad = dialect.smoothing_axis_rad.value_or(0);
@@ -52,9 +54,13 @@ CornerWords corner_words(const joints::AxisProgram& program, const NcDialect& di
   // Without TCP no word bounds a rotary that turns in a cut.
   out.contour = header.contour_granted && !dialect.contour_on.empty() && (tcp || !program.turns_in_cuts);
   if (dialect.blend_is_way && !out.contour) return way_words(program, dialect, header);
-  if (out.contour) out.blend_mm = rounded_down(header.blend_mm, kBlendDigits);
-  if ((dialect.blend_axis || out.contour) && tcp)
-    out.granted_rad = rotaries_of(program) * radians(rounded_down(header.blend_axis_deg, kAxisDigits));
+  if (op != nullptr && op->wide_corners) {
+    out.wide = true;
+    out.blend_mm = op->wide_corners->mm;
+    out.axis_deg = rounded_down(op->wide_corners->axis_deg, kAxisDigits);
+  }
+  if (out.contour || out.wide) out.blend_mm = rounded_down(out.blend_mm, kBlendDigits);
+  if ((dialect.blend_axis || out.contour) && tcp) out.granted_rad = rotaries_of(program) * radians(out.axis_deg);
   out.granted_mm = out.blend_mm;
   return out;
 }
@@ -64,6 +70,8 @@ void note_corners(joints::AxisProgram& program, const NcDialect& dialect, const 
   const CornerWords words = corner_words(program, dialect, header);
   program.corners = dialect.blend_is_way && !words.contour ? timing::Corners::way : timing::Corners::round;
   program.corner_tolerance_mm = words.blend_mm;
+  for (joints::AxisOperation& op : program.operations)
+    op.corner_tolerance_mm = op.wide_corners ? corner_words(program, dialect, header, &op).blend_mm : 0;
 }
 
 double granted_blend_mm(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {

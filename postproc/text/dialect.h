@@ -9,9 +9,9 @@
 // the order that it begins with, {last} one, {end} the one behind it, {stride} of the order, {tooth} the variable that
 // holds the tooth, {index_axis} letter of the index rotary, {angle} its turn to the tooth where calls stand one by one,
 // {zeros} all axes at 0, {program} number of the sub-program, {operation}. The line "{safe_start}" stands for all lines
-// of `safe_start`, "{pick}" for those of `pick` where the order is spread, "{first_tooth}" for the comment that names
-// the line behind it, "{zero_on}" and "{zero_off}" for those of the loop that move the zero of the index rotary. Values
-// are printed in the format of the dialect.
+// of `safe_start`, "{corners}" for those of `corners`, "{pick}" for those of `pick` where the order is spread,
+// "{first_tooth}" for the comment that names the line behind it, "{zero_on}" and "{zero_off}" for those of the loop
+// that move the zero of the index rotary. Values are printed in the format of the dialect.
 #pragma once
 
 #include <array>
@@ -131,6 +131,7 @@ struct NcDialect {
   /// What must hold of the work offset beside X Y Z, for who sets the machine up: {offset}, {datum}, and {rotaries},
   /// "A, C".
   std::string offset_trust;
+  NcLinesOfText message;              ///< ahead of an operation: what the control shows meanwhile; {operation_type}
   NcLinesOfText body_end;             ///< ahead of sub-programs that stand behind the main program
   NcLinesOfText retract;              ///< Z to its top, machine coordinates
   NcLinesOfText tool_call;            ///< behind the retract, where the tool changes: fetches it
@@ -162,7 +163,8 @@ struct NcDialect {
   bool only_clamp_m = false;
   bool clamps_by_output = false;  ///< "M64 P0" and "M65 P0" may, too: outputs of the control
   std::array<std::optional<machines::RotaryClamp>, 2> clamps;  ///< of the rotaries of the machine
-  bool blend = false;        ///< `start` lets the control leave corners by {blend}: counts as deviation
+  NcLinesOfText corners;     ///< "{corners}" of `start`, and ahead of an operation that has others than the one before
+  bool blend = false;        ///< `corners` lets the control leave corners by {blend}: counts as deviation
   double exact_path_mm = 0;  ///< without `blend`: the tip is off a corner by up to this all the same
   /// Codes of a control that stops at every corner or leaves corners by what nobody states: `corner_stop` stands in
   /// `safe_start`; `corner_flow` in its place where the machine file states `corner_mm`, and around smoothing. Empty:
@@ -175,12 +177,12 @@ struct NcDialect {
   /// With it, where cuts turn a rotary without TCP: all {axes} are the path, a rotary {axis} at the {radius} mm; at the
   /// end none is named.
   std::string path_group, path_radius, path_group_end;
-  /// In place of the line with {blend} where the tolerance is a share of what the proof leaves: ahead of the teeth of
+  /// In place of `corners` where the tolerance is a share of what the proof leaves: ahead of the teeth of
   /// an operation and behind them; {finish} is one of `contour_finish`, without TCP and with it. Empty: the same line.
   NcLinesOfText contour_on, contour_off;
   std::array<std::string, 2> contour_finish{};
   std::string contour_trust;     ///< what that trusts the control with, for those who list what is assumed
-  bool blend_axis = false;       ///< `start` lets the control lean the tool by {blend_axis} deg while TCP is on
+  bool blend_axis = false;       ///< `corners` lets the control lean the tool by {blend_axis} deg while TCP is on
   bool takes_smoothing = false;  ///< the machine file may state lines that switch the control's own smoothing
   NcLinesOfText smoothing_on,
       smoothing_off;        ///< those lines, ahead of the teeth of an operation and behind them; instead of `blend`

@@ -14,9 +14,14 @@
 namespace toothpath::text {
 namespace {
 
-constexpr std::size_t kLongestName = 24;
-constexpr std::size_t kLongestHeader = 20;  // lines
-constexpr double kFreeFeed = 1000;          // F that goes with G94 where nothing is cut, mm/min
+constexpr std::size_t kLongestName = 24, kNameLength = 32;  // as a name of a program; behind its number
+constexpr std::size_t kLongestHeader = 20;                  // lines
+constexpr double kFreeFeed = 1000;                          // F that goes with G94 where nothing is cut, mm/min
+
+/// Characters of a comment in one line.
+std::size_t comment_width(const NcDialect& dialect) {
+  return dialect.max_line - dialect.comment_open.size() - dialect.comment_close.size();
+}
 
 /// With TCP the zero of a rotary moves, and the frame with it.
 bool zero_turns_frame(const joints::AxisProgram& program, const NcDialect& dialect) {
@@ -29,6 +34,21 @@ bool zero_turns_frame(const joints::AxisProgram& program, const NcDialect& diale
 
 }  // namespace
 
+void set_corner_values(NcLines::Values& values, const CornerWords& corners, const joints::AxisProgram& program,
+                       const NcDialect& dialect) {
+  const auto text = [&](double v, int decimals) {
+    std::string s;
+    numbers::append_fixed(s, numbers::to_fixed(v, decimals), decimals, dialect.point_always);
+    return s;
+  };
+  values["blend"] = text(corners.blend_mm, 6);
+  values["blend_axis"] = text(corners.axis_deg, 4);
+  values["roughs"] = corners.wide ? "1" : "0";
+  values["cut"] = corners.wide ? "ROUGH" : "FINISH";
+  const bool tcp = program.tcp != machines::TcpMode::none;
+  values["finish"] = expanded(dialect.contour_finish[tcp ? 1 : 0], values).value_or("");
+}
+
 NcLines::Values program_values(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
   const auto unsigned_value = [&](double v, int decimals) {
     std::string s;
@@ -37,16 +57,12 @@ NcLines::Values program_values(const joints::AxisProgram& program, const NcDiale
   };
   NcLines::Values values;
   values["number"] = std::to_string(header.program_number);
-  values["name"] = numbers::comment_text(header.job_name).substr(0, 32);
+  values["name"] = numbers::first_words(numbers::comment_text(header.job_name), kNameLength);
   values["id"] = program_id(header.job_name, header.name_end);
   values["offset"] = program.work_offset;
   if (dialect.datum != nullptr) values["datum"] = std::to_string(dialect.datum(program.work_offset));
   const CornerWords corners = corner_words(program, dialect, header);
-  values["blend"] = unsigned_value(corners.blend_mm, 6);
-  values["blend_axis"] = unsigned_value(std::floor(header.blend_axis_deg * 1e4 + 1e-6) * 1e-4, 4);
-  const bool tcp = program.tcp != machines::TcpMode::none;
-  const auto finish = expanded(dialect.contour_finish[tcp ? 1 : 0], values);
-  values["finish"] = finish.value_or("");
+  set_corner_values(values, corners, program, dialect);
   values["radius"] = unsigned_value(corners.radius_mm, 0);
   for (const char letter : program.letters)
     if (letter != 0) values["axes"] += (values["axes"].empty() ? "" : ",") + std::string(1, letter);
@@ -138,11 +154,15 @@ std::vector<std::string> assumed_comments(const std::vector<std::string>& assume
   std::vector<std::string> out = {"WARNING, ASSUMED AND NOT MEASURED:"};
   const std::size_t room = ahead + 2 < kLongestHeader ? kLongestHeader - ahead - 1 : 1;
   const std::vector<std::string> groups = machines::grouped_keys(assumed);
-  if (groups.size() <= room) {
-    for (const auto& g : groups) out.push_back(numbers::comment_text("ASSUMED " + g));
+  const std::size_t width = comment_width(dialect);
+  std::vector<std::string> lines;
+  for (const auto& g : groups)
+    for (auto& line : numbers::lines_of_words(numbers::comment_text("ASSUMED " + g), width))
+      lines.push_back(std::move(line));
+  if (lines.size() <= room) {
+    out.insert(out.end(), lines.begin(), lines.end());
     return out;
   }
-  const std::size_t width = dialect.max_line - dialect.comment_open.size() - dialect.comment_close.size();
   std::vector<std::string> packed;
   std::vector<std::size_t> held;  // groups of a line
   for (const auto& g : groups) {
@@ -151,8 +171,9 @@ std::vector<std::string> assumed_comments(const std::vector<std::string>& assume
       packed.back() += "; " + text;
       ++held.back();
     } else {
-      packed.push_back("ASSUMED " + text);
-      held.push_back(1);
+      for (auto& line : numbers::lines_of_words("ASSUMED " + text, width)) packed.push_back(std::move(line));
+      held.resize(packed.size(), 0);
+      ++held.back();
     }
   }
   if (packed.size() > room) {
@@ -235,7 +256,7 @@ void NcLines::line(std::string_view text) {
 void NcLines::comment(std::string_view text) {
   const std::size_t begin = text_.size();
   text_ += dialect_.comment_open;
-  text_ += text.substr(0, dialect_.max_line - dialect_.comment_open.size() - dialect_.comment_close.size());
+  text_ += numbers::first_words(text, comment_width(dialect_));
   text_ += dialect_.comment_close;
   end_line(begin, false);
 }

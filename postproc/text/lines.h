@@ -50,6 +50,11 @@ class NcLines {
 /// A template with its names replaced; empty: it names a value that `values` lacks.
 [[nodiscard]] std::optional<std::string> expanded(std::string_view pattern, const NcLines::Values& values);
 
+struct CornerWords;
+/// {blend}, {blend_axis}, {finish}, {roughs} 1 and {cut} ROUGH where a later operation takes what the corners leave.
+void set_corner_values(NcLines::Values& values, const CornerWords& corners, const joints::AxisProgram& program,
+                       const NcDialect& dialect);
+
 /// Values of the templates that are the same throughout a program.
 [[nodiscard]] NcLines::Values program_values(const joints::AxisProgram& program, const NcDialect& dialect,
                                              const NcHeader& header);

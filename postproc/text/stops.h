@@ -26,9 +26,10 @@ enum class ToolChecks : std::uint8_t {
 struct TextWishes {
   Stops stops = Stops::none;
   StopWord stop_word = StopWord::optional_stop;
-  bool restart_numbers = false;  ///< N words where the program can be taken up again
+  bool restart_numbers = true;  ///< N words where the program can be taken up again, where blocks have no number else
   ToolChecks checks = ToolChecks::none;
-  int teeth_between_checks = 0;  ///< at most; with `teeth`
+  int teeth_between_checks = 0;    ///< at most; with `teeth`
+  bool stop_at_first_cut = false;  ///< behind a change of the tool, ahead of its first cut
 };
 
 }  // namespace toothpath::text

@@ -72,9 +72,8 @@ class Writer {
       else if (t == "{zero_on}") move_zero(dialect_.loop.zero_on, dialect_.loop.offset_on, !tilts_);
       else if (t == "{zero_off}") move_zero(dialect_.loop.zero_off, dialect_.loop.offset_off, true);
       else if (t == "{first_tooth}") out_.comment(first_tooth_comment(program_, *now_));
-      else if (t.find("{blend}") != std::string::npos) {
-        if (!corners_.contour) corner_line(t);
-      } else if (t == "{path_group_end}")
+      else if (t == "{corners}") corner_lines();
+      else if (t == "{path_group_end}")
         out_.fill(corners_.group ? NcLinesOfText{dialect_.path_group_end} : NcLinesOfText{}, values_);
       else out_.fill({t}, values_);
   }
@@ -105,15 +104,17 @@ class Writer {
                        [&](const std::string& all) { return all.find(line) != std::string::npos; }))
         out_.fill({line}, values_);
   }
-  /// The line with {blend}: as it stands, or behind the axes of the path.
-  void corner_line(const std::string& pattern) {
+  /// How far the control may leave corners: as it stands, or behind the axes of the path.
+  void corner_lines() {
+    wide_in_force_ = corners_.wide;
+    if (corners_.contour) return;
     if (corners_.group) out_.fill({dialect_.path_group}, values_);
     for (std::size_t a = 3; a < 5 && corners_.group; ++a)
       if (program_.letters[a] != 0) {
         values_["axis"] = program_.letters[a];
         out_.fill({dialect_.path_radius}, values_);
       }
-    out_.fill({pattern}, values_);
+    out_.fill(dialect_.corners, values_);
   }
   /// The blank of the graphics.
   void blank() {
@@ -153,9 +154,10 @@ class Writer {
 
   // Places where the operator stops or begins again.
   void stop() { out_.line(header_.wishes.stop_word == StopWord::optional_stop ? "M1" : "/M0"); }
-  void number_here(int position, std::size_t within) {
-    if (header_.wishes.restart_numbers && within < kNumbersOfOperation)
-      out_.number_next(kNumbersOfOperation * (position + 1) + static_cast<int>(within));
+  /// The same of a program that begins in the middle. @param place of the order; -1: the operation begins
+  void number_here(const joints::AxisOperation& op, int place) {
+    if (header_.wishes.restart_numbers && !dialect_.block_numbers && place + 1 < kNumbersOfOperation)
+      out_.number_next(kNumbersOfOperation * (op.operation + 1) + place + 1);
   }
   /// Lines of the shop behind a tooth, and a stop; what the stop may have ended is switched on again.
   void behind_tooth() {
@@ -182,6 +184,10 @@ class Writer {
       fill(dialect_.tool_recall);
     }
     fill(dialect_.tool_change);
+    if (changes && header_.wishes.stop_at_first_cut) {
+      stop();
+      fill(dialect_.spindle_on);  // what the stop may have ended
+    }
     const auto next = std::find_if(all.begin() + position, all.end(),
                                    [&](const auto& other) { return other.tool_number != op.tool_number; });
     if (!changes || next == all.end()) return;
@@ -207,8 +213,11 @@ class Writer {
     values_["end"] = std::to_string(op.end_of(program_.teeth));
     values_["last"] = std::to_string(op.end_of(program_.teeth) - 1);
     now_ = &op;
+    corners_ = corner_words(program_, dialect_, header_, &op);
+    set_corner_values(values_, corners_, program_, dialect_);
     values_["work_top"] = linear(program_.retract_z_mm - op.tool_length_mm - program_.work_offset_at_mm.z());
     values_["operation"] = std::to_string(op.operation);
+    values_["operation_type"] = numbers::comment_text(op.type);
     values_["program"] = std::to_string(header_.program_number + bodies(body_of(position) + 1));
   }
 
@@ -220,11 +229,15 @@ class Writer {
         numbers::comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP{}", op.tool_number, op.tool_name,
                                           out_.value(numbers::to_fixed(op.tool_length_mm, 4), 4),
                                           op.sister_of == 0 ? "" : fmt::format(", SISTER OF T{}", op.sister_of))));
+    for (const std::string& name : op.shop_names)
+      out_.comment(numbers::comment_text(fmt::format("T{} {}", op.tool_number, name)));
+    out_.fill(dialect_.message, values_);
     const NcLoop& loop = dialect_.loop;
     std::vector<joints::AxisBlock> room;
     tilts_ = planes_.any(op.teeth.front().all(room));
     if (program_.loop && loop.form == NcLoop::Form::sub_program && body_of(position) == position) loop_body(op);
-    number_here(position, 0);
+    const auto at = static_cast<std::size_t>(position);
+    if (at == 0 || program_.operations[at - 1].operation != op.operation) number_here(op, -1);
     machine_retract();
     tool_call(op, position);
     fill(tcp_ ? dialect_.tcp_compensation : dialect_.compensation);
@@ -232,11 +245,12 @@ class Writer {
     if (coolant_) out_.line(coolant_->on);
     print(dialect_.smoothing_on);
     if (corners_.contour) out_.fill(dialect_.contour_on, values_);
+    else if (corners_.wide || wide_in_force_) corner_lines();
     print(clamps_.opening());
     if (!program_.loop) {
-      std::size_t within = 0;
+      int place = op.first_place;
       for (const auto& tooth : op.teeth) {
-        number_here(position, ++within);
+        number_here(op, place++);
         const std::vector<joints::AxisBlock>& list = tooth.all(room);
         out_.comment(tooth.remark.empty() ? fmt::format("TOOTH {}", tooth.tooth) : numbers::comment_text(tooth.remark));
         forget();
@@ -251,7 +265,7 @@ class Writer {
       }
       count_from({});
     } else if (loop.form == NcLoop::Form::called) {
-      calls(op, position);
+      calls(op);
     } else if (loop.form == NcLoop::Form::sub_program) {
       fill(loop.call);
     } else {
@@ -283,7 +297,7 @@ class Writer {
   }
 
   // One tooth stands behind the main program and is called for each.
-  void calls(const joints::AxisOperation& op, int position) {
+  void calls(const joints::AxisOperation& op) {
     const int count = bodies(operations()), last = header_.program_number + count;
     const bool numbered = dialect_.loop.call.front().find("{program}") != std::string::npos;
     if (numbered && last > kLastProgram) {
@@ -296,7 +310,7 @@ class Writer {
     for (int n = op.first_place; n < op.end_of(program_.teeth); ++n) {
       const int k = joints::tooth_of_place(n, program_.tooth_stride, program_.teeth);
       out_.comment(fmt::format("AT TOOTH {}", k));
-      number_here(position, static_cast<std::size_t>(n - op.first_place) + 1);
+      number_here(op, n);
       values_["angle"] = out_.value(numbers::ratio_to_fixed(std::int64_t{360} * k * program_.index_sign, program_.teeth,
                                                             program_.format.rotary_decimals),
                                     program_.format.rotary_decimals);
@@ -342,9 +356,19 @@ class Writer {
     }
   }
 
-  // Blocks of one tooth; begins and ends in G94.
+  /// A rotary turns while the tool cuts.
+  static bool turns_in_cut(const std::vector<joints::AxisBlock>& list) {
+    for (std::size_t i = 1; i < list.size(); ++i)
+      if (list[i].kind == joints::BlockKind::feed &&
+          (list[i].words[3] != list[i - 1].words[3] || list[i].words[4] != list[i - 1].words[4]))
+        return true;
+    return false;
+  }
+
+  // Blocks of one tooth; begins and ends in G94. Inverse time where a rotary turns in a cut; else F is that of the tip.
   void blocks(const std::vector<joints::AxisBlock>& list, IndexWord index) {
     inverse_time_ = false;
+    cuts_turn_ = turns_in_cut(list);
     for (std::size_t i = 0; i < list.size() && !error_; ++i) {
       const joints::AxisBlock& b = list[i];
       if (i > 0 && !program_.planes) note_unwinding(list[i - 1], b);
@@ -426,8 +450,8 @@ class Writer {
 
   void joint_feed(const joints::AxisBlock& b, IndexWord index) {
     const double rate = 1 / b.minutes;
-    if (!(b.minutes > 0) ||
-        (dialect_.inverse_time && dialect_.max_inverse_time > 0 && rate > dialect_.max_inverse_time * (1 + 1e-9))) {
+    if (!(b.minutes > 0) || (dialect_.inverse_time && cuts_turn_ && dialect_.max_inverse_time > 0 &&
+                             rate > dialect_.max_inverse_time * (1 + 1e-9))) {
       error_ = fail("record {}: F {:.3f} of a block exceeds {:.3f}, the greatest that {} takes", b.record, rate,
                     dialect_.max_inverse_time, dialect_.name);
       return;
@@ -443,7 +467,7 @@ class Writer {
     const double length = words_.length(b);
     const bool exact =
         dialect_.inverse_time && dialect_.min_feed_product > 0 && rate * length < dialect_.min_feed_product;
-    const bool modal = !dialect_.inverse_time || program_.planes;
+    const bool modal = !dialect_.inverse_time || program_.planes || !cuts_turn_;
     const bool per_minute = exact || modal;
     if (!per_minute && !inverse_time_) out_.line("G93");
     if (per_minute && inverse_time_) out_.line("G94");
@@ -551,7 +575,8 @@ class Writer {
   const joints::AxisOperation* now_ = nullptr;
   int motion_ = -1;         // 0, 1; -1: to be printed
   std::int64_t feed_ = -1;  // F per minute in force, millionths; -1: to be printed
-  bool inverse_time_ = false;
+  bool cuts_turn_ = false;  // some feed of the tooth at hand turns a rotary
+  bool inverse_time_ = false, wide_in_force_ = false;
   bool tilts_ = false;  // some blocks of the operation stand in a tilted plane
 };
 

@@ -25,7 +25,8 @@ struct ContourRun {
 };
 
 /// The machine that ships, with or without accelerations.
-ContourRun run_on(const std::string& machine, const std::string& acceleration, const std::string& key) {
+ContourRun run_on(const std::string& machine, const std::string& acceleration, const std::string& key,
+                  const std::string& first_operation = "") {
   const TestDir dir;
   std::string file = file_text(std::string(TOOTHPATH_SOURCE_DIR) + "/machines/data/" + machine + ".toml");
   file = std::regex_replace(file, std::regex("max_acceleration = [^\n]*\n"), "");
@@ -37,7 +38,9 @@ ContourRun run_on(const std::string& machine, const std::string& acceleration, c
   job.pole = "slow";
   job.aside_deg = 0.3;
   job.machine = "m.toml";
-  write_file(dir / "job.toml", job_text(job) + key);
+  std::string text = job_text(job) + key;
+  text.insert(text.find("[[operation]]"), first_operation);
+  write_file(dir / "job.toml", text);
   const auto done = run_program({"run", dir / "job.toml", "--out", dir / "out"});
   ContourRun out{done.exit_code, done.err, {}, Json::parse(file_text(dir / "out/report.json"), nullptr, false)};
   if (done.exit_code == 0) out.text = file_text(dir / ("out/" + out.report["program"]["file"].get<std::string>()));
@@ -70,6 +73,22 @@ TEST_P(Contour, IsAShareOfWhatIsLeft) {
   for (const Json& line : wide.report["assumed"])
     listed = listed || line.get<std::string>().find("contour deviation = ") != std::string::npos;
   EXPECT_TRUE(listed);
+}
+
+// What leaves an allowance is granted a share of that, in a word of its own; the ledger counts what no later one takes.
+TEST_P(Contour, OfAnAllowanceIsWider) {
+  const std::string first =
+      "[[operation]]\ntype = \"semi_finishing\"\ntool = 1\nspeed = 20000\nfeed = 900.0\nscallop = 0.1\nchord_tolerance "
+      "= "
+      "0.004\nallowance = 0.2\ntool_axis = [[60.8, -3.0, 0.3], [62.2, 3.0, 0.3]]\n";
+  const ContourRun run = run_on(GetParam(), "20.0", "", first);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::regex words(R"(CYCL DEF 32\.1 T([0-9.]+)\n.*HSC-MODE:1|CYCLE832\(([0-9.]+),_ORI_ROUGH)");
+  std::smatch m;
+  ASSERT_TRUE(std::regex_search(run.text, m, words)) << run.text.substr(0, 3000);
+  EXPECT_NEAR(std::stod(m[1].matched ? m[1] : m[2]), 0.004, 1e-9);
+  EXPECT_LT(run.blending_um(), 3.0);
+  EXPECT_LE(run.bound_um(), 3.0);
 }
 
 // A value that does not fit names its place and what would.

@@ -137,12 +137,13 @@ Language siemens() {
              {R"(CYCLE832\(\))", "smoothing", "off"},
              {R"(R\d=.*)", "-", ""},
              {R"(FOR .*|ENDFOR)", "-", ""},
+             {R"re(MSG\(("[^"]*")?\))re", "-", ""},
              {R"re(T="T\d+")re", "-", ""},
              {R"(FGROUP\([A-Z,]+\))", "path group", "named"},
              {R"(FGROUP\(\))", "path group", "machine"},
              {R"(FGREF\[[ABC]\]=\d+)", "-", ""}};
   l.comment = ';';
-  l.axis = R"(([XYZ]|[ABC]=|[ABC]3=|F|S|ADIS=)(R2[+-]\d*\.?\d*|-?\d*\.?\d*))";
+  l.axis = R"(([XYZ]|[ABC]=|[ABC]3=|F|S|ADIS=)(R2(?:[+-]\d*\.?\d*)?|-?\d*\.?\d*))";
   l.safe = {{"units", "mm"},   {"plane", "xy"},     {"distance", "absolute"}, {"feed", "per minute"},
             {"radius", "off"}, {"tcp", "off"},      {"frame", "zero"},        {"compressor", "off"},
             {"offset", "G54"}, {"smoothing", "on"}, {"shift", "off"}};

@@ -349,7 +349,10 @@ class SiemensWalker : public Walker {
 
  protected:
   std::string uncommented(const std::string& line) const override { return stripped(line.substr(0, line.find(';'))); }
-  bool execute(const std::string& code) override {
+  bool execute(const std::string& numbered) override {
+    static const std::regex number_of_block("^N\\d+ "), message(R"x(MSG\(("[^"]*")?\))x");
+    const std::string code = std::regex_replace(numbered, number_of_block, "", std::regex_constants::format_first_only);
+    if (matches(code, message)) return true;
     static const std::regex loop(R"((?:FOR) (R\d+)=(.*) TO (.*))"), assign(R"((R\d+)=(.*))"), tool("T=\"T(\\d+)\""),
         path(R"x(FGROUP\(.*\)|FGREF\[[ABC]\]=\S+|WORKPIECE\(,"",,"(?:PIPE|CYLINDER)"(?:,[-0-9.]+)+\))x"),
         turn(R"(ROT Z=(.*))"), zero(R"(TRANS ([ABC])=(.*))"), measures(R"(TOOL_CHECK\([-0-9.,]+\))");

@@ -107,6 +107,11 @@ struct Attempt {
   page::SceneStates states;
 };
 
+bool leaves_allowance(const job::Job& job) {
+  return std::any_of(job.operations.begin(), job.operations.end(),
+                     [](const path::MillingOperation& operation) { return operation.allowance_mm > 0; });
+}
+
 /// The posts and proofs of one run.
 class Attempts {
  public:
@@ -126,8 +131,9 @@ class Attempts {
   }
 
   /// Axis program, NC text on the disk, proof of those bytes, with this contour tolerance.
-  Result<Attempt> make(const std::optional<double>& contour_mm) {
+  Result<Attempt> make(const std::optional<double>& contour_mm, bool wide_roughing = false) {
     request_.contour_mm = contour_mm;
+    request_.wide_roughing = wide_roughing;
     auto posted = process::post_program(run_.checked, request_, run_.report.assumed, output_, run_.clock);
     if (!posted) return posted.error();
     auto bodies = bodies_in_machine(run_.job, run_.machine, *run_.gear.process, nullptr);
@@ -164,8 +170,11 @@ class Attempts {
       granted = contour_to_grant(request_, narrow->posted, limits_.gouge_mm - narrow->proof.gouge.bound_mm);
       if (!granted) return narrow;
     }
-    auto wide = make(granted);
-    if (wide && wide->proof.reasons.empty()) return wide;
+    for (const bool wide_roughing : {leaves_allowance(run_.job), false}) {
+      auto wide = make(granted, wide_roughing);
+      if (wide && wide->proof.reasons.empty()) return wide;
+      if (!wide_roughing) break;
+    }
     return make(std::nullopt);
   }
   /// Why the tolerance of the job is too wide; nothing: it is not.

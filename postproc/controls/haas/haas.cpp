@@ -17,7 +17,9 @@ text::NcDialect words() {
   d.tcp_off.clear();
   d.tcp_starts_at_zero = false;
   d.tcp_notes.clear();
-  d.offset_trust = "{offset} is 0 for {rotaries}; no G254 is in force";
+  d.offset_trust =
+      "{offset} is 0 for {rotaries}; no G254 is in force; setting 33 is FANUC or HAAS, not YASNAC, so that G52 shifts "
+      "{offset}";
   d.planes = {};  // G268 and G269 are an option
   d.loop.before = {"N{label} (OPERATION {operation})"};
   d.loop.call = {"M97 P{label}"};

@@ -67,8 +67,8 @@ text::NcDialect words() {
                   "CYCL DEF 10.1 ROT+0"};
   d.blank = {"BLK FORM CYLINDER Z R{blank_radius} L{blank_length} DIST{blank_top}"};
   d.blank_ring = {"BLK FORM CYLINDER Z R{blank_radius} L{blank_length} DIST{blank_top} RI{bore_radius}"};
-  d.start = {"{safe_start}",           "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M126", "CYCL DEF 32.0 TOLERANCE",
-             "CYCL DEF 32.1 T{blend}", "CYCL DEF 32.2 HSC-MODE:0 TA{blend_axis}"};
+  d.start = {"{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M126", "{corners}"};
+  d.corners = {"CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1 T{blend}", "CYCL DEF 32.2 HSC-MODE:{roughs} TA{blend_axis}"};
   d.datum = preset_number;
   d.retract = {"L Z{top} R0 FMAX M91"};
   d.tool_call = {"TOOL CALL {tool} Z S{speed}"};

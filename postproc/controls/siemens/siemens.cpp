@@ -30,46 +30,7 @@ text::NcPlanes planes() {
   return p;
 }
 
-text::NcDialect words() {
-  text::NcDialect d;
-  d.name = "siemens";
-  d.extension = ".mpf";
-  d.name_begins_with_two_letters = true;
-  d.format = {.linear_decimals = 5, .rotary_decimals = 6};
-  d.rotary_equals = "=";
-  d.comment_open = ";";
-  d.comment_close = "";
-  d.max_line = 240;
-  d.safe_start = {"G17 G40 G90 G94 G710", "TRAFOOF", "ROT", "COMPOF"};
-  // All heights are absolute; the last but two is where the machining may end.
-  d.blank = {"WORKPIECE(,\"\",,\"CYLINDER\",192,{blank_top},{blank_bottom},{blank_bottom},{blank_diameter})"};
-  d.blank_ring = {
-      "WORKPIECE(,\"\",,\"PIPE\",448,{blank_top},{blank_bottom},{blank_bottom},{blank_diameter},{bore_diameter})"};
-  d.offset_trust = "{offset} and the basic frames have no rotation, and are 0 for {rotaries}";
-  d.start = {"{safe_start}", "{offset}", "G641 ADIS={blend}"};
-  d.retract = {"SUPA G0 Z{top} D0"};
-  d.tool_call = {"T=\"T{tool}\"", "M6"};
-  d.tool_next = {"T=\"T{next}\""};
-  d.tool_change = {"{safe_start}", "{offset}", "S{speed} M3"};
-  d.compensation = d.tcp_compensation = {"D1"};
-  d.operation_end = {"G94 F{free}"};
-  d.end = {"G60", "{path_group_end}"};
-  d.frame_end = {"M30"};
-  d.blend = d.blend_is_way = true;
-  d.takes_smoothing = true;  // lines of the shop in place of G641
-  d.contour_on = {"CYCLE832({blend},{finish})"};
-  d.contour_off = {"CYCLE832()", "G60"};
-  d.contour_finish = {"_FINISH,1", "_ORI_FINISH,{blend_axis}"};
-  d.contour_trust = "what G641 and CYCLE832 say, by the manuals";
-  d.path_group = "FGROUP({axes})";
-  d.path_radius = "FGREF[{axis}]={radius}";
-  d.path_group_end = "FGROUP()";
-  d.tcp_on = {"TRAORI", "{offset}", "ORIWKS", "ORIAXES"};
-  d.tcp_off = {"TRAFOOF", "{offset}"};
-  d.tcp_notes = {"TCP: machine data 21104 ORI_IPO_WITH_G_CODE = 1, so that ORIAXES rules"};
-  d.tcp_zero = "TRAORI counts {axis} from it, machine data 24510 (24610, ..) TRAFO5_ROT_AX_OFFSET";
-  d.vector_words = {"A3=", "B3=", "C3="};
-  d.planes = planes();
+void add_loop(text::NcDialect& d) {
   d.loop.form = text::NcLoop::Form::in_line;
   d.loop.before = {"{first_tooth}", "FOR R1={first} TO {last}", "{pick}", "R2={turns}*360/{teeth}", "{zero_on}"};
   d.loop.pick = {"R4=R1*{stride}-{teeth}*TRUNC((R1*{stride}+0.5)/{teeth})"};
@@ -88,6 +49,51 @@ text::NcDialect words() {
   d.loop.zero_off = {"TRANS"};
   d.loop.frame_on = {"R3={frame_sign}{tooth}*360/{teeth}", "ROT Z=R3"};
   d.loop.frame_off = {"ROT"};
+}
+
+text::NcDialect words() {
+  text::NcDialect d;
+  d.name = "siemens";
+  d.extension = ".mpf";
+  d.name_begins_with_two_letters = true;
+  d.format = {.linear_decimals = 5, .rotary_decimals = 6};
+  d.rotary_equals = "=";
+  d.comment_open = ";";
+  d.comment_close = "";
+  d.max_line = 240;
+  d.safe_start = {"G17 G40 G90 G94 G710", "TRAFOOF", "ROT", "COMPOF"};
+  // All heights are absolute; the last but two is where the machining may end.
+  d.blank = {"WORKPIECE(,\"\",,\"CYLINDER\",192,{blank_top},{blank_bottom},{blank_bottom},{blank_diameter})"};
+  d.blank_ring = {
+      "WORKPIECE(,\"\",,\"PIPE\",448,{blank_top},{blank_bottom},{blank_bottom},{blank_diameter},{bore_diameter})"};
+  d.offset_trust = "{offset} and the basic frames have no rotation, and are 0 for {rotaries}";
+  d.start = {"{safe_start}", "{offset}", "{corners}"};
+  d.corners = {"G641 ADIS={blend}"};
+  d.message = {"MSG(\"OP {operation} {operation_type}, T{tool}\")"};
+  d.retract = {"SUPA G0 Z{top} D0"};
+  d.tool_call = {"T=\"T{tool}\"", "M6"};
+  d.tool_next = {"T=\"T{next}\""};
+  d.tool_change = {"{safe_start}", "{offset}", "S{speed} M3"};
+  d.compensation = d.tcp_compensation = {"D1"};
+  d.operation_end = {"G94 F{free}"};
+  d.end = {"G60", "{path_group_end}", "MSG()"};
+  d.frame_end = {"M30"};
+  d.blend = d.blend_is_way = true;
+  d.takes_smoothing = true;  // lines of the shop in place of G641
+  d.contour_on = {"CYCLE832({blend},{finish})"};
+  d.contour_off = {"CYCLE832()", "G60"};
+  d.contour_finish = {"_{cut},1", "_ORI_{cut},{blend_axis}"};
+  d.contour_trust = "what G641 and CYCLE832 say, by the manuals";
+  d.path_group = "FGROUP({axes})";
+  d.path_radius = "FGREF[{axis}]={radius}";
+  d.path_group_end = "FGROUP()";
+  d.tcp_on = {"TRAORI", "{offset}", "ORIWKS", "ORIAXES"};
+  d.tcp_off = {"TRAFOOF", "{offset}"};
+  d.tcp_notes = {"TCP: machine data 21104 ORI_IPO_WITH_G_CODE = 1, so that ORIAXES rules"};
+  d.tcp_zero = "TRAORI counts {axis} from it, machine data 24510 (24610, ..) TRAFO5_ROT_AX_OFFSET";
+  d.vector_words = {"A3=", "B3=", "C3="};
+  d.planes = planes();
+  add_loop(d);
   return d;
 }
 

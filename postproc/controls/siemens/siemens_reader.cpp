@@ -248,8 +248,8 @@ class Siemens {
     parameters_[*n] = *v;
     return Problem();
   }
-  /// CYCLE832(tolerance,_FINISH,1) and CYCLE832(tolerance,_ORI_FINISH,degrees); CYCLE832() ends it, and how far corners
-  /// are left behind it must be said.
+  /// CYCLE832(tolerance,_FINISH,1) and CYCLE832(tolerance,_ORI_FINISH,degrees), _ROUGH and _SEMIFIN alike; CYCLE832()
+  /// ends it, and how far corners are left behind it must be said.
   Problem contour_cycle(readback::NcScanner& s) {
     const int column = s.column();
     if (s.take(")")) {
@@ -261,11 +261,16 @@ class Siemens {
     const auto mm = s.number();
     if (!mm || !(*mm > 0)) return here(column, "CYCLE832 needs a tolerance above 0");
     double deg = 0;
-    const bool plain = s.take(",_FINISH,1)");
-    if (!plain && s.take(",_ORI_FINISH,"))
+    bool plain = false, leans = false;
+    for (const char* cut : {"FINISH,", "SEMIFIN,", "ROUGH,"}) {
+      plain = plain || s.take(fmt::format(",_{}1)", cut));
+      leans = leans || (!plain && s.take(fmt::format(",_ORI_{}", cut)));
+    }
+    if (leans)
       if (const auto given = s.number(); given && s.take(")")) deg = *given;
     if (!plain && !(deg > 0 && deg <= 10))
-      return here(s.column(), "_FINISH,1 or _ORI_FINISH and its tolerance, up to 10 deg, expected");
+      return here(s.column(),
+                  "_FINISH,1 or _ORI_FINISH and its tolerance, up to 10 deg, expected (SEMIFIN, ROUGH alike)");
     if (!s.done()) return here(s.column(), "words behind CYCLE832");
     execution_.set_contour(*mm, plain ? std::nullopt : std::optional(radians(deg)));
     corners_said_ = true;

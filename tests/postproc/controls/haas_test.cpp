@@ -67,7 +67,7 @@ TEST(Haas, CallsOneToothForAll) {
   const auto text = text::write_nc(*loop, *controls::dialect_of(haas()), header);
   ASSERT_TRUE(text) << text.error().message;
   for (const char* line :
-       {"\nG52 C-120.\nM97 P100\n", "\nG52 C-240.\nM97 P102\n", "\nM30\nN100 (OPERATION 0)\n", "\nM99\n"})
+       {"\nN1002 G52 C-120.\nM97 P100\n", "\nN2003 G52 C-240.\nM97 P102\n", "\nM30\nN100 (OPERATION 0)\n", "\nM99\n"})
     EXPECT_NE(text->text.find(line), std::string::npos) << line;
   EXPECT_EQ(reading(text->text, standing()), "");
   EXPECT_NE(reading(replaced(text->text, "M97 P100\n(AT TOOTH 1", "M97 P101\n(AT TOOTH 1"), standing())

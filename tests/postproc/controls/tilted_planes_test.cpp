@@ -56,6 +56,7 @@ Result<Written> written(const machines::Machine& machine, bool planes, bool expa
   auto axes = joints::AxisProgramTestAccess::build(paths, tools(), setup, machine, kTeeth, kBody, o);
   if (!axes) return axes.error();
   text::NcHeader header;
+  header.wishes.restart_numbers = false;  // edits look for lines as they begin
   header.job_name = "planes";
   auto text = text::write_nc(*axes, *dialect, header);
   if (!text) return text.error();

@@ -96,6 +96,7 @@ TEST_F(DangerModes, EndStateIsTheResetState) {
 TEST_F(DangerModes, FeedWithEveryChangeOfItsMeaning) {
   every_post([&] {
     if (apt() || heidenhain()) return;  // one meaning of F only
+    int of_all_jobs = 0;
     every_job([&](const ModalRun& run, const auto&) {
       bool given = false;
       int inverse = 0, changes = 0;
@@ -112,9 +113,10 @@ TEST_F(DangerModes, FeedWithEveryChangeOfItsMeaning) {
         }
         EXPECT_TRUE(given) << b.line << ": " << b.code;
       }
-      EXPECT_EQ(inverse > 0, post().tcp == machines::TcpMode::none);
-      EXPECT_GE(changes, post().tcp == machines::TcpMode::none ? 3 : 1);
+      EXPECT_GE(changes, inverse > 0 ? 3 : 1);
+      of_all_jobs += inverse;
     });
+    EXPECT_EQ(of_all_jobs > 0, post().tcp == machines::TcpMode::none);
   });
 }
 

@@ -235,12 +235,12 @@ TEST_F(DangerWords, NamesStayNames) {
         static const std::regex with_name(R"((BEGIN|END) PGM [A-Z][A-Z0-9_]{0,23} MM|PARTNO/[A-Z][A-Z0-9_]{0,23})");
         const bool name_line = b.code.find("P") < 8 && std::regex_match(b.code, with_name);
         if (b.code.find('%') != std::string::npos && b.code != "%") ADD_FAILURE() << b.code;
-        code.push_back(name_line ? "NAME" : b.code);
+        if (!b.code.empty()) code.push_back(name_line ? "NAME" : b.code);  // a long remark takes several lines
       }
       return code;
     };
     const auto plain = code_of("PLAIN");
-    EXPECT_GT(plain.size(), 30u);
+    EXPECT_GT(plain.size(), 20u);
     std::vector<std::string> names = {"",
                                       ") G0 Z-100 (",
                                       "(((",

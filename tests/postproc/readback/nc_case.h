@@ -121,6 +121,7 @@ inline Result<text::NcText> nc_text(const std::vector<path::ClPath>& paths, cons
   header.job_name = "sample";
   header.machine_name = machine.name;
   header.coolant = machines::Coolant::flood;
+  header.wishes.restart_numbers = false;  // edits look for lines as they begin
   return write_nc(*program, *controls::dialect_of(machine), header);
 }
 

@@ -438,6 +438,45 @@ TEST_P(ContourTolerance, IsWrittenAndCounted) {
   if (!way) { EXPECT_GE(least, 0.0025 * (1 - 1e-6)); }
 }
 
+// An operation that leaves an allowance is granted more, and the one behind it no more than before.
+TEST_P(ContourTolerance, OfRoughingEndsBehindIt) {
+  const Granted& g = GetParam();
+  const machines::Machine m = machine_for(g.dialect, g.tcp);
+  const auto dialect = controls::dialect_of(m);
+  auto p =
+      axis_program({sample_path(0.3, g.swing, 6), sample_path(0.3, g.swing, 6, 1), sample_path(0.3, g.swing, 4, 2)}, m,
+                   standing(), 2, true);
+  ASSERT_TRUE(p) << p.error().message;
+  p->operations[1].wide_corners = joints::CornerGrant{0.006, 0.01};
+  text::NcHeader header;
+  header.blend_mm = 0.0025;
+  header.blend_axis_deg = 0.008;
+  header.contour_granted = true;
+  text::note_corners(*p, *dialect, header);
+  const auto text = write_nc(*p, *dialect, header);
+  ASSERT_TRUE(text) << text.error().message;
+  const bool way = text->text.find("G641 ADIS=0.001") != std::string::npos;  // no word bounds rotaries that turn
+  EXPECT_EQ(text->text.find("0.006") == std::string::npos, way);
+  EXPECT_EQ(std::regex_search(text->text, std::regex("_ROUGH,|_ORI_ROUGH,|HSC-MODE:1")), !way);
+  std::string error;
+  const auto moves = moves_of(text->text, m, error);
+  ASSERT_EQ(error, "");
+  std::array<std::size_t, 3> cuts{};
+  for (const auto& e : moves) {
+    if (e.rapid || e.operation < 0) continue;
+    const auto n = static_cast<std::size_t>(e.operation);
+    ++cuts.at(n);
+    const double tolerance = n == 1 && !way ? p->operations[1].corner_tolerance_mm : p->corner_tolerance_mm;
+    EXPECT_FLOAT_EQ(e.tolerance_mm, static_cast<float>(tolerance)) << n;
+    if (!way) { EXPECT_FLOAT_EQ(e.blend_mm, n == 1 ? 0.006F : 0.0025F) << n; }
+    if (!way && g.tcp != machines::TcpMode::none) {
+      EXPECT_NEAR(e.blend_axis_rad, 2 * radians(n == 1 ? 0.01 : 0.008), 1e-8);
+    }
+  }
+  for (const std::size_t n : cuts) EXPECT_GT(n, 5U);
+  EXPECT_NEAR(text::granted_blend_mm(*p, *dialect, header), 0.0025, way ? 3e-4 : 1e-12);
+}
+
 // What the text must say for it.
 TEST(ContourTolerance, IsRefusedWhereItSaysTooLittle) {
   const machines::Machine m = machine_for("siemens", machines::TcpMode::angles);
@@ -454,7 +493,7 @@ TEST(ContourTolerance, IsRefusedWhereItSaysTooLittle) {
   };
   EXPECT_EQ(refusal("x{9}", ""), "");
   EXPECT_NE(refusal("_ORI_FINISH,0.002", "_FINISH,1").find("bounds X, Y and Z alone"), std::string::npos);
-  EXPECT_NE(refusal("_ORI_FINISH", "_ORI_ROUGH").find("_FINISH,1 or _ORI_FINISH"), std::string::npos);
+  EXPECT_NE(refusal("_ORI_FINISH", "_ORI_FAST").find("_FINISH,1 or _ORI_FINISH"), std::string::npos);
   EXPECT_NE(refusal("CYCLE832\\(0.0025", "CYCLE832(0").find("a tolerance above 0"), std::string::npos);
   EXPECT_NE(refusal("CYCLE832\\(0.0025[^\n]*\n", "CYCLE832()\n").find("how far the control leaves corners"),
             std::string::npos);

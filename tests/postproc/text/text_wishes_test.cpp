@@ -168,10 +168,55 @@ TEST_P(TextWishes, StopsOfTheOperator) {
   }
 }
 
-TEST_P(TextWishes, NumbersWhereTheProgramIsTakenUpAgain) {
-  if (is("apt") || is("heidenhain")) return;
+// What the shop calls tool and holder stands beside what the cutter is, in capitals and without brackets of its own.
+TEST_P(TextWishes, NamesOfToolAndHolder) {
+  if (is("apt")) return;
+  joints::AxisProgram p = program();
+  tool::ToolAssembly named;
+  named.name = "Gr\u00fcn (R2) lang";
+  named.holder_name = "ER16 x 70";
+  p.operations[2].shop_names = tool::shop_names(named);
+  text::NcHeader header;
+  header.job_name = "sample";
+  const auto with = write_nc(p, *controls::dialect_of(machine_of(GetParam())), header);
+  ASSERT_TRUE(with) << with.error().message;
+  EXPECT_EQ(count_of(with->text, "T2 NAME GRUEN \\[R2\\] LANG\\)?$"), 1U) << with->text.substr(0, 3000);
+  EXPECT_EQ(count_of(with->text, "T2 HOLDER ER16 X 70\\)?$"), 1U);
+  EXPECT_EQ(count_of(with->text, "T1 NAME"), 0U);
+}
+
+// The tool is there and turns behind it; nothing is cut ahead of it.
+TEST_P(TextWishes, AStopAheadOfTheFirstCutOfATool) {
+  if (is("apt")) return;
   const machines::Machine m = machine_of(GetParam());
-  const std::string plain = text(m), numbered = text(m, {text::Stops::none, text::StopWord::optional_stop, true});
+  text::TextWishes wishes;
+  wishes.stop_at_first_cut = true;
+  const std::string plain = text(m), stopped = text(m, wishes);
+  EXPECT_EQ(count_of(stopped, "(^| )M1$"), 2U);
+  expect_same_moves(plain, stopped);
+  expect_same_walk(plain, stopped);
+  const std::vector<std::string> lines = pieces_of(stopped);
+  const std::regex call(is("heidenhain") ? "TOOL CALL \\d+ Z S\\d+$" : "(^| )M6$"), stop("(^| )M1$"),
+      cut(is("heidenhain") ? " F\\d+" : "(^|[^A-Z0-9])G1 |^M9[78] ");  // a tooth that is called, too
+  int state = 0;                                                       // 1: called, 2: stopped, 0: cut
+  for (const std::string& line : lines) {
+    if (std::regex_search(line, call)) EXPECT_EQ(std::exchange(state, 1), 0) << line;
+    else if (std::regex_search(line, stop)) EXPECT_EQ(std::exchange(state, 2), 1) << line;
+    else if (std::regex_search(line, cut)) { EXPECT_NE(std::exchange(state, 0), 1) << line; }
+  }
+}
+
+// By default; Heidenhain has a number in every block.
+TEST_P(TextWishes, NumbersWhereTheProgramIsTakenUpAgain) {
+  if (is("apt")) return;
+  const machines::Machine m = machine_of(GetParam());
+  text::TextWishes none;
+  none.restart_numbers = false;
+  const std::string plain = text(m, none), numbered = text(m);
+  if (is("heidenhain")) {
+    EXPECT_EQ(plain, numbered);
+    return;
+  }
   for (const char* n : {"^N1000 ", "^N2000 ", "^N3000 "}) EXPECT_EQ(count_of(numbered, n), 1U) << n;
   const std::size_t all = count_of(numbered, "^N\\d{4} ");
   EXPECT_TRUE(all == 3U || all == 3U * (1 + kWishTeeth)) << all;

@@ -98,24 +98,33 @@ TEST_P(BothDialects, ModesAtToolChangeAndEnd) {
   EXPECT_TRUE(ended);
 }
 
-// Danger 4, 5, 8, 18: F with every G93 block, G94 without rotaries (Fanuc), only G0 and G1, points on Fanuc.
+// Danger 4, 5, 8, 18: F with every G93 block, an F since G94 was said, G94 only while the rotaries stand (Fanuc), only
+// G0 and G1, points on Fanuc.
 TEST_P(BothDialects, WordsOfEveryBlock) {
-  bool g93 = false;
+  bool g93 = false, feed = false, cut = false;
+  std::string rotaries;
   int motion = -1;
   for (const auto& l : lines(text())) {
     const std::string c = without_comments(l);
     EXPECT_FALSE(std::regex_search(c, std::regex("G[023]?[23]\\b|G4[12]\\b|G91\\b|G20\\b"))) << l;
     EXPECT_LE(l.size(), fanuc() ? 80u : 252u);
     if (c.find("G93") != std::string::npos) g93 = true;
-    if (c.find("G94") != std::string::npos) g93 = false;
+    if (c.find("G94") != std::string::npos) g93 = feed = false;
+    feed = feed || c.find('F') != std::string::npos;
     if (std::regex_search(c, std::regex("G0\\b"))) motion = 0;
     if (std::regex_search(c, std::regex("G1\\b"))) motion = 1;
     if (c.rfind("G52", 0) == 0) continue;  // where words count from
     const bool moves = c.find("o1") == std::string::npos && std::regex_search(c, std::regex("[XYZAC]-?[0-9.\\[]"));
     if (moves && motion == 1) {
-      EXPECT_TRUE(g93 || !fanuc()) << l;
-      EXPECT_NE(c.find('F'), std::string::npos) << l;
+      EXPECT_TRUE(g93 ? c.find('F') != std::string::npos : feed) << l;
+      const auto turn = c.find_first_of("AC");
+      if (cut && !g93 && fanuc() && turn != std::string::npos) {
+        EXPECT_EQ(c.substr(turn, c.find(" F") - turn), rotaries) << l;
+      }
     }
+    if (const auto turn = c.find_first_of("AC"); moves && turn != std::string::npos)
+      rotaries = c.substr(turn, c.find(" F") - turn);
+    cut = moves && motion == 1;
     if (moves && motion == 0) {
       const bool xy = c.find_first_of("XY") != std::string::npos, z = c.find('Z') != std::string::npos,
                  rotary = c.find_first_of("AC") != std::string::npos;
@@ -304,6 +313,46 @@ TEST(NcReader, G64OfLinuxcncCountsMoreThanItsTolerance) {
   EXPECT_NEAR(counted("G61"), 0.000075, 1e-9);
 }
 
+TEST(NcWriter, WholeWordsAreKept) {
+  using numbers::first_words;
+  EXPECT_EQ(first_words("dhfg on a table", 15), "dhfg on a table");
+  EXPECT_EQ(first_words("dhfg on a table", 14), "dhfg on a");
+  EXPECT_EQ(first_words("coarse, fine", 8), "coarse");
+  EXPECT_EQ(first_words("coarse fine", 6), "coarse");
+  EXPECT_EQ(first_words("unbroken", 5), "unbro");
+  EXPECT_EQ(first_words("gr\u00fcn", 3), "gr");  // no half of a letter
+  EXPECT_EQ(first_words("", 3), "");
+  using Lines = std::vector<std::string>;
+  EXPECT_EQ(numbers::lines_of_words("one two three", 8), (Lines{"one two", "three"}));
+  EXPECT_EQ(numbers::lines_of_words("unbroken word", 5), (Lines{"unbro", "ken", "word"}));
+  EXPECT_EQ(numbers::lines_of_words("one", 3), Lines{"one"});
+  EXPECT_EQ(numbers::lines_of_words("", 3), Lines{""});
+}
+
+// F is that of the tip where no rotary turns in a cut of the tooth, and inverse time where one does.
+TEST(NcWriter, InverseTimeStandsWhereARotaryTurns) {
+  for (const char* dialect : {"fanuc", "haas", "mitsubishi_m80", "linuxcnc"})
+    for (const double swing : {0.0, 0.1}) {
+      const machines::Machine m = with_dialect(trunnion(), dialect);
+      const auto p = axis_program({sample_path(0.3, swing, 6)}, m, standing(), 2, true);
+      ASSERT_TRUE(p) << p.error().message;
+      text::NcHeader header;
+      header.job_name = "sample";
+      const auto text = write_nc(*p, *controls::dialect_of(m), header);
+      ASSERT_TRUE(text) << text.error().message;
+      EXPECT_EQ(text->text.find("G93") != std::string::npos, swing > 0) << dialect;
+      const auto control = control_of(m, standing(), tools());
+      double minutes = 0, asked = 0;
+      const auto read = readback::execute_nc(text->text, "p", *control, [&](const readback::ExecutedMove& e) {
+        if (!e.rapid) minutes += double(e.minutes);
+      });
+      ASSERT_TRUE(read) << read.error().text();
+      for (const auto& tooth : p->operations[0].teeth)
+        for (const auto& b : tooth.blocks) asked += b.kind == joints::BlockKind::feed ? b.minutes : 0;
+      EXPECT_NEAR(minutes, asked, 1e-4 * asked) << dialect << swing;
+    }
+}
+
 // Danger 7: a block that hardly moves X Y Z but turns keeps its time on a control that raises slow rates.
 TEST(NcWriter, TinyLinearStepsKeepTheirTime) {
   path::ClPath path;
@@ -342,7 +391,7 @@ TEST(NcWriter, TinyLinearStepsKeepTheirTime) {
 }
 
 TEST(NcWriter, FeedBeyondTheControlIsAnErrorNotAClamp) {
-  auto p = axis_program({sample_path(0, 0)}, with_dialect(trunnion(), "fanuc"), standing(), 3);
+  auto p = axis_program({sample_path(0.3, 0.2)}, with_dialect(trunnion(), "fanuc"), standing(), 3);
   ASSERT_TRUE(p);
   EXPECT_TRUE(text::write_nc(*p, words_of("fanuc"), {}));
   p->operations[0].teeth[0].blocks[10].minutes = 1e-5;
