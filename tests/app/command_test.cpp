@@ -759,6 +759,42 @@ TEST(Run, ASmallGearGoesTheWholeWay) {
 
 // Every control has its own names of work offsets: written, read back, and refused where the control has none of that
 // name.
+// The page holds proven deviations and estimated bending against the tolerance that is asked, and names the class: one
+// more for every factor sqrt(2).
+TEST(Run, ThePageTellsWhatTheAccuracyIsMadeOf) {
+  const TestDir dir;
+  for (const double asked_um : {10.0, 30.0, 2000.0}) {
+    write_file(dir / "job.toml",
+               file_text(kQuick) + fmt::format("form_tolerance = {}\niso_class = 7\n", asked_um / 1000));
+    const Finished run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
+    if (asked_um > 1000) {
+      EXPECT_EQ(run.exit_code, 3);
+      EXPECT_NE(run.err.find("form_tolerance = 2"), std::string::npos) << run.err;
+      continue;
+    }
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const std::string page = file_text(dir / "out/report.html");
+    const auto value = [&](const std::string& part) {
+      std::smatch m;
+      const std::regex row("<td[^>]*>" + part + "</td><td[^>]*>([0-9.]+)</td>");
+      EXPECT_TRUE(std::regex_search(page, m, row)) << part;
+      return m.empty() ? 0.0 : std::stod(m[1]);
+    };
+    const double deep = value("cut too deep"), left = value("left on the flanks"), bends = value("bending of the tool"),
+                 sum = value("together");
+    const auto report = nlohmann::json::parse(file_text(dir / "out/report.json"));
+    EXPECT_NEAR(deep, std::max(0.0, report["gouge_um"]["bound"].get<double>()), 0.006);
+    EXPECT_LE(left, report["excess_um"]["finished"]["bound"].get<double>() + 0.006);
+    EXPECT_NEAR(sum, deep + left + bends, 0.02 + 0.06 * bends);  // bending is told in few digits
+    std::smatch m;
+    ASSERT_TRUE(std::regex_search(page, m, std::regex("class 7 asked, (-?[0-9]+) reached")));
+    const int reached = std::stoi(m[1]);
+    EXPECT_LE(sum, asked_um * std::pow(2, 0.5 * (reached - 7)) * 1.001);
+    EXPECT_GT(sum, asked_um * std::pow(2, 0.5 * (reached - 8)) * 0.999);
+    EXPECT_EQ(page.find(": reached; class") != std::string::npos, sum <= asked_um);
+  }
+}
+
 TEST(WorkOffset, IsThatOfTheControl) {
   const std::string quick = file_text(kQuick);
   const auto job_on = [&](const std::string& machine, const std::string& offset) {

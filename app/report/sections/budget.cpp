@@ -6,6 +6,7 @@ namespace toothpath::sections {
 namespace {
 
 constexpr double kUm = 1000;
+constexpr int kFirstClass = 1, kLastClass = 11;  // of ISO 1328-1
 
 /// Of the ledger: measured where it was, else predicted.
 double ledger_um(const SectionInput& input, std::initializer_list<proof::ErrorSource> sources) {
@@ -59,10 +60,10 @@ std::string length_text(const SectionInput& input) {
 std::string reached_text(double sum_um, const job::VerifySettings& verify) {
   const double asked_um = kUm * *verify.form_tolerance_mm;
   std::string out = fmt::format("{:.2f} um asked: {}", asked_um, sum_um <= asked_um ? "reached" : "not reached");
-  if (verify.iso_class && sum_um > 0)
-    out += fmt::format("; class {} asked, {} reached", *verify.iso_class,
-                       *verify.iso_class + static_cast<int>(std::ceil(2 * std::log2(sum_um / asked_um) - 1e-9)));
-  return out;
+  if (!verify.iso_class) return out;
+  const int reached = *verify.iso_class + static_cast<int>(std::ceil(2 * std::log2(sum_um / asked_um) - 1e-9));
+  return out + fmt::format("; class {} asked, {} reached", *verify.iso_class,
+                           reached > kLastClass ? std::string("none") : std::to_string(std::max(reached, kFirstClass)));
 }
 
 }  // namespace
