@@ -168,7 +168,7 @@ std::string test_json(const machines::Machine& machine, const std::vector<sheet:
 /// A text of places of the tool would show nothing of the machine's axes.
 Status has_axes(const machines::Machine& machine) {
   const controls::Control* control = controls::find(machine.dialect);
-  if (control == nullptr || !control->cutter_locations) return Ok{};
+  if (control == nullptr || !control->words.cutter_locations) return Ok{};
   return fail_at(
       machine.where("dialect"),
       "dialect = \"{}\" has places of the tool and no axes: its text shows nothing of senses and pivots; the "

@@ -38,8 +38,6 @@ struct Control {
   std::vector<std::string> aliases;  ///< other names that a machine file may use
   WorkOffsets offsets;
   readback::NcExecute execute = nullptr;  ///< executes its text; shares nothing with what writes it
-  bool cutter_locations =
-      false;  ///< the text has places of the tool; in which order the axes move is the business of a post processor
   std::optional<ToolTable> tool_table = std::nullopt;  ///< none: tools are entered at the control
   probing::ProbingWords probe = nullptr;               ///< a probing program in its words; null: it has none
   readback::FindActingComment acting_comment =

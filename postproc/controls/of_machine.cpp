@@ -100,7 +100,7 @@ class Judge {
 
   void tcp() {
     if (machine_.tcp == machines::TcpMode::none) {
-      if (control_.cutter_locations)
+      if (words_.cutter_locations)
         refuse("tcp", "dialect \"{}\" carries tips and tool axes, no joints: tcp = \"vectors\" is supported",
                words_.name);
       return;
@@ -440,6 +440,7 @@ joints::AxisOptions axis_options(const text::NcDialect& words, const machines::M
   options.index_is_rounded = words.loop.form == text::NcLoop::Form::called;
   options.expand_teeth = !machine.post.index_loop.value_or(true) || words.loop.form == text::NcLoop::Form::none;
   options.tcp_starts_at_zero = words.tcp_starts_at_zero;
+  options.cutter_locations = words.cutter_locations;
   options.corners = corners_of(words, machine.post);
   options.tcp_frame_is_table = words.loop.zero_turns_frame || (words.tcp_starts_at_zero && words.loop.zero_with_tcp);
   options.tcp_loop = !words.loop.frame_on.empty() || options.tcp_frame_is_table;
@@ -455,7 +456,7 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
   if (control == nullptr) return fail("dialect \"{}\" cannot be read back: {} can", machine.dialect, list_of_names());
   readback::NcControl c;
   c.execute = control->execute;
-  c.cutter_locations = control->cutter_locations;
+  c.cutter_locations = control->words.cutter_locations;
   c.corners = corners_of(control->words, machine.post);
   c.rotary_rounding_deg =
       0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(control->words.format.rotary_decimals));

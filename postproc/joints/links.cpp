@@ -89,10 +89,14 @@ void ToothBuilder::rise_to(double height) {
 }
 
 void ToothBuilder::too_low(double height) {
-  error_ = fail_as(DiagnosticKind::verification,
-                   "operation {} record {} (tooth {}): the part sweeps up to {:.3f} mm above the machine zero with its "
-                   "margin, the tool tip at Z {:.3f} rises to {:.3f} only",
-                   operation_->operation, record_, tooth_, height, program_.retract_z_mm, retract_height());
+  lack_ = height - retract_height();
+  error_ =
+      fail_as(DiagnosticKind::verification,
+              "operation {} record {} (tooth {}): links need the tip of T{} at {:.3f} mm above the machine zero, "
+              "over all that the part sweeps while the rotaries turn, with {:.1f} mm of room; {:.3f} mm long, with "
+              "Z at {:.3f}, it rises to {:.3f} only",
+              operation_->operation, record_, tooth_, tool_.number, height, job_.options.clearance_margin_mm,
+              words_.length(), program_.retract_z_mm, retract_height());
 }
 
 /// The rotaries, in parts where one that rolls over would go half a turn.

@@ -24,6 +24,7 @@ namespace {
 
 constexpr double kCoincident = 1e-9;             // mm: the gear axis lies on the index axis
 constexpr double kParallel = 1e-12;              // sine of the angle between gear axis and index axis
+constexpr int kLowerPlaces = 4;                  // that are tried for a part that stands too high
 constexpr std::size_t kMostBlocks = 20'000'000;  // of 20 bytes in memory, and 30 to 100 bytes of text each
 
 /// Decides about angles, loop and copies; the blocks of a tooth come from ToothBuilder.
@@ -74,7 +75,10 @@ class ProgramBuilder {
     const AxisJob job{machine_, body_, options_, teeth_, gear_, coincident_};
     ToothBuilder builder(job, program_, placed_, setup_.work_offset_at_mm);
     for (std::size_t p = 0; p < paths_.size(); ++p) {
-      if (auto bad = operation(p, builder)) return *bad;
+      if (auto bad = operation(p, builder)) {
+        lack_ = builder.lack_mm();
+        return with_lower_place(*bad);
+      }
       if (!loop_is_entered_) return written_out();
     }
     if (poses_) program_.offer = poses_->best();
@@ -108,6 +112,33 @@ class ProgramBuilder {
     AxisOptions options = options_;
     options.search_origin = false;
     offer.posted = ProgramBuilder(paths_, tools_, there, machine_, teeth_, body_, options).build().has_value();
+  }
+  /// The error of a part that stands too high for its links, with a place farther down where they have room.
+  Diagnostic with_lower_place(Diagnostic bad) const {
+    if (!(lack_ > 0) || !options_.search_origin) return bad;
+    const auto up = [](double mm) { return std::ceil(mm * 1000) / 1000; };
+    bad.message += fmt::format("; a tool that is shorter by {:.3f} mm or more helps", up(lack_));
+    Setup there = setup_;
+    AxisOptions options = options_;
+    options.search_origin = false;
+    double lack = lack_;
+    for (int k = 0; k < kLowerPlaces && lack > 0; ++k) {
+      there.origin_mm.z() -= up(lack);
+      there.work_offset_at_mm.z() -= up(lack);
+      ProgramBuilder lower(paths_, tools_, there, machine_, teeth_, body_, options);
+      const auto made = lower.build();
+      lack = lower.lack_;
+      const Vec3 &at = there.origin_mm, &work = there.work_offset_at_mm;
+      if (made)
+        bad.message += fmt::format(
+            ", or the part {:.3f} mm lower: setup.origin = [{:.3f}, {:.3f}, {:.3f}] with work_offset_at = [{:.3f}, "
+            "{:.3f}, {:.3f}] fits",
+            setup_.origin_mm.z() - at.z(), at.x(), at.y(), at.z(), work.x(), work.y(), work.z());
+      else if (!(lack > 0))
+        bad.message += fmt::format("; {:.3f} mm lower the links have room, but {}", setup_.origin_mm.z() - at.z(),
+                                   made.error().message.substr(0, made.error().message.find('\n')));
+    }
+    return bad;
   }
   /// The error of a travel that is exceeded, with the place of the part that has the most room.
   Diagnostic with_offer(Diagnostic bad) {
@@ -409,7 +440,7 @@ class ProgramBuilder {
     op.shop_names = tool::shop_names(tool);
     op.cutter = tool::apt_cutter(tool);
     op.spindle_rpm = path.spindle_rpm;
-    builder.begin(op, tool.length_mm);
+    builder.begin(op, tool);
     const int written = program_.loop ? 1 : teeth_;
     std::vector<Way> ways;
     if (parallel_ || written == 1) {
@@ -518,6 +549,7 @@ class ProgramBuilder {
   std::optional<Diagnostic> error_;
   TravelRecord placed_;
   std::optional<choice::TravelPoses> poses_;
+  double lack_ = 0;  // mm: that the links of the program are short of
 };
 
 Result<AxisProgram> build_from(std::span<const path::ClPath* const> paths, std::span<const tool::ToolAssembly> tools,

@@ -54,6 +54,8 @@ struct AxisOptions {
   int tooth_stride = 1;           ///< place n of the order cuts tooth n * stride mod z (tooth_order.h); 1: the sequence
   bool tcp_starts_at_zero =
       false;  ///< TCP freezes the table frame where it is switched on: only with the rotaries at zero
+  bool cutter_locations =
+      false;  ///< the text has tips and tool axes alone: it does not say how the top of Z is reached
   timing::Corners corners = timing::Corners::jump;  ///< how the control joins feed blocks
   /// While TCP is on the dialect can turn the frame of a loop about the gear axis.
   bool tcp_loop = false;

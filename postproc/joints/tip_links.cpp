@@ -17,6 +17,9 @@ constexpr double kLeastOut = 0.3;      // of the tool axis, square to the gear a
 constexpr double kLeansIn = 1e-6;      // of the tool axis towards the gear axis, while it turns beside the part
 constexpr double kBesideSlack = 0.01;  // mm: of places outside the part, which words round
 constexpr int kWider = 30;             // trials of a way across that keeps clear
+constexpr int kLooks = 90;             // at a turn
+constexpr double kBelowTip = 1;        // mm: room over the part of what reaches below the tip
+constexpr double kTurning = 0.05;      // rad, and mm: a check follows turns of the tool as closely as that
 
 /// Words of the rotaries where they stand at their zeros.
 RotaryPair at_zero(const machines::KinematicChain& chain) {
@@ -26,9 +29,31 @@ RotaryPair at_zero(const machines::KinematicChain& chain) {
 }
 }  // namespace
 
-/// Height over the part, table frame.
-double ToothBuilder::link_height() const {
-  return body_top(chain_, job_.gear, job_.body, at_zero(chain_)) + job_.options.clearance_margin_mm;
+/// The cutting part keeps a little room, shank and holder what the check of a turn takes of it, too.
+double ToothBuilder::room_over_part(double up, bool turns) const {
+  const Vec3 axis(std::sqrt(std::max(0.0, 1 - up * up)), 0, up);
+  double room = job_.options.clearance_margin_mm, arm = 0;
+  for (const tool::RoundedFrustum& body : tool_.cutting) {
+    room = std::max(room, kBelowTip - tool::lowest_z(body, Vec3::Zero(), axis));
+    arm = std::max(arm, std::hypot(body.core.to + body.round, body.widest()));
+  }
+  for (const tool::Frustum& body : tool_.bodies)
+    arm = std::max(arm, std::hypot(body.to, std::max(body.radius_from, body.radius_to)));
+  const double least = turns ? std::max(kBelowTip, kTurning * (1 + arm)) : kBelowTip;
+  for (const tool::Frustum& body : tool_.bodies)
+    room = std::max(room, least - tool::lowest_z(body, Vec3::Zero(), axis));
+  return room;
+}
+
+double ToothBuilder::link_height(const RotaryPair& from, const RotaryPair& to) const {
+  double least_up = 1;
+  for (int k = 0; k <= kLooks; ++k) {
+    machines::Joints j;
+    for (std::size_t n = 0; n < 2; ++n) j.rotary_rad[n] = from[n] + double(k) / kLooks * (to[n] - from[n]);
+    least_up = std::min(least_up, chain_.forward(j, words_.length()).axis.z());
+    if (from == to) break;
+  }
+  return body_top(chain_, job_.gear, job_.body, at_zero(chain_)) + room_over_part(least_up, from != to);
 }
 
 /// Zero, of a rotary that rolls over the nearest whole turn.
@@ -39,13 +64,13 @@ RotaryPair ToothBuilder::zero_rotaries() const {
 }
 
 /// Z at its top, rotaries at zero, the tip over the gear axis or over a place beside the part, TCP on in the block that
-/// lowers Z.
-void ToothBuilder::start_at_zero(const Vec3& over) {
-  const double top = link_height();
+/// lowers Z. From over the gear axis the tool leans to its `first` position there, beside the part it has room.
+void ToothBuilder::start_at_zero(const Vec3& over, const RotaryPair& first) {
+  const RotaryPair zero = zero_rotaries();
+  const double top = link_height(zero, beside_ ? zero : first);
   if (top > retract_height() + 1e-9) return too_low(top);
   last_.words[2] = words_.joint_word(program_.retract_z_mm, 2, last_);
   last_.tip = false;
-  const RotaryPair zero = zero_rotaries();
   const double swept = tip_height_for_turn(zero);
   if (swept > retract_height() + 1e-9) return too_low(swept);
   const Vec3 up = job_.gear.rotation.col(2);
@@ -113,7 +138,6 @@ std::optional<Vec3> ToothBuilder::beside(const Vec3& tip, const Vec3& axis, doub
 
 /// The tip stands still beside the part, while the tool never leans over it.
 void ToothBuilder::push_turn_beside(const RotaryPair& rotaries) {
-  constexpr int kLooks = 90;
   const RotaryPair from = words_.joints(last_).rotary_rad;
   const Vec3 up = job_.gear.rotation.col(2), tip = words_.tip(last_), at = tip - job_.gear.origin,
              outwards = (at - at.dot(up) * up).normalized();
@@ -147,10 +171,10 @@ std::optional<RotaryPair> ToothBuilder::one_upright(const RotaryPair& from, cons
 /// about a part that stands still, says nothing of the top of Z and goes on from here straight to where the next tooth
 /// starts.
 void ToothBuilder::rise_beside() {
-  Vec3 above = words_.tip(last_);
-  above.z() = link_height();
-  push_tip(above);
   const RotaryPair zero = zero_rotaries();
+  Vec3 above = words_.tip(last_);
+  above.z() = link_height(zero, zero);
+  push_tip(above);
   push_turn_beside(one_upright(words_.joints(last_).rotary_rad, zero).value_or(zero));
 }
 
@@ -206,7 +230,7 @@ void ToothBuilder::link_over(const machines::TablePose& target, const RotaryPair
   AxisBlock goal = last_;
   words_.set_tip(goal, target.tip_mm, rotaries);
   if (lies_down(target.axis)) return;
-  rise_along_tool();
+  rise_along_tool(link_height(words_.joints(last_).rotary_rad, rotaries));
   if (error_) return;
   if (goal.words[3] != last_.words[3] || goal.words[4] != last_.words[4]) push_turn(rotaries);
   const double height = words_.tip(last_).z();
@@ -220,8 +244,7 @@ void ToothBuilder::link_over(const machines::TablePose& target, const RotaryPair
   broken_ = true;
 }
 
-void ToothBuilder::rise_along_tool() {
-  const double height = link_height();
+void ToothBuilder::rise_along_tool(double height) {
   const Vec3 tip = words_.tip(last_);
   if (tip.z() >= height - 1e-9) return;
   const Vec3 axis = chain_.forward(words_.joints(last_), words_.length()).axis;
@@ -237,9 +260,11 @@ void ToothBuilder::leave_to_top() {
     const auto out =
         beside(words_.tip(last_), chain_.forward(words_.joints(last_), words_.length()).axis, beside_radius());
     if (out) push_tip(*out);
-    if (!error_ && chain_.table.empty() && program_.tcp == machines::TcpMode::vectors) rise_beside();
+    if (!error_ && job_.options.cutter_locations) rise_beside();
   } else {
-    rise_along_tool();
+    // Cutter locations go on from here straight to where the next tooth starts, upright.
+    const RotaryPair stands = words_.joints(last_).rotary_rad;
+    rise_along_tool(link_height(stands, job_.options.cutter_locations ? zero_rotaries() : stands));
   }
   if (error_) return;
   AxisBlock b;

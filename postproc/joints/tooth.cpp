@@ -20,9 +20,10 @@ ToothBuilder::ToothBuilder(const AxisJob& job, AxisProgram& program, TravelRecor
   words_.set_planes(program.planes);
 }
 
-void ToothBuilder::begin(AxisOperation& operation, double tool_length_mm) {
+void ToothBuilder::begin(AxisOperation& operation, const tool::ToolAssembly& tool) {
   operation_ = &operation;
-  words_.set_length(tool_length_mm);
+  tool_ = tool::proof_tool(tool);
+  words_.set_length(tool.length_mm);
   last_.tip = false;
   at_retract_ = true;  // the rotaries stay, Z is at its top; before the first operation they stand at zero
 }
@@ -44,7 +45,7 @@ void ToothBuilder::tooth(const FollowedPath& followed, const RotaryPair& next_st
     if (const auto place = beside_ ? beside(pose(0).tip_mm, pose(0).axis, beside_radius()) : std::nullopt)
       over = *place;
     if (error_) return;
-    start_at_zero(over);
+    start_at_zero(over, words_.rounded(angles.front()));
   }
   for (std::size_t i = 0; i < path.records.size() && !error_; ++i) {
     record_ = followed.record(i);

@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "cam/tool/proof_tool.h"
 #include "postproc/joints/clearance.h"
 #include "postproc/joints/pole.h"
 #include "postproc/joints/program.h"
@@ -55,7 +56,7 @@ class ToothBuilder {
   ToothBuilder(const AxisJob& job, AxisProgram& program, TravelRecord& travel, const Vec3& work_offset_mm);
 
   /// A new tool: the machine stands at the top of Z.
-  void begin(AxisOperation& operation, double tool_length_mm);
+  void begin(AxisOperation& operation, const tool::ToolAssembly& tool);
   /// Blocks of one tooth. @param rotation table frame from the gear frame of this tooth; @param next_start rotaries of
   /// the next
   void tooth(const FollowedPath& path, const RotaryPair& next_start, int k, const Mat3& rotation,
@@ -67,6 +68,8 @@ class ToothBuilder {
 
   [[nodiscard]] const std::optional<Diagnostic>& error() const { return error_; }
   [[nodiscard]] const AxisWords& words() const { return words_; }
+  /// By how much the tip rises too little for the links of `error`; 0: it is another error.
+  [[nodiscard]] double lack_mm() const { return lack_; }
 
  private:
   // postproc/joints/tooth.cpp: state of the sequence.
@@ -98,12 +101,12 @@ class ToothBuilder {
   void end_on_angles();
 
   // postproc/joints/tip_links.cpp: with TCP.
-  void start_at_zero(const Vec3& over);
+  void start_at_zero(const Vec3& over, const RotaryPair& first);
   void tip_link_to(const machines::TablePose& target, const RotaryPair& rotaries);
   void link_over(const machines::TablePose& target, const RotaryPair& rotaries);
   void link_beside(const machines::TablePose& target, const RotaryPair& rotaries);
   [[nodiscard]] bool lies_down(const Vec3& axis);
-  void rise_along_tool();
+  void rise_along_tool(double height);
   /// The tool comes in from the side somewhere in a tooth: its links go beside the part.
   [[nodiscard]] bool comes_from_the_side(const FollowedPath& path, const Mat3& rotation) const;
   [[nodiscard]] double from_gear_axis(const Vec3& p) const;
@@ -119,7 +122,10 @@ class ToothBuilder {
   void push_turn(const RotaryPair& rotaries);
   void push_turn_block(const RotaryPair& rotaries);
   [[nodiscard]] RotaryPair zero_rotaries() const;
-  [[nodiscard]] double link_height() const;
+  /// Height over the part, table frame, at which the whole tool passes while the rotaries go from one pair to the other.
+  [[nodiscard]] double link_height(const RotaryPair& from, const RotaryPair& to) const;
+  /// Least height of the tip over the part while the tool axis rises by `up` or more.
+  [[nodiscard]] double room_over_part(double up, bool turns) const;
 
   // postproc/joints/feed.cpp
   void feed_to(const machines::TablePose& from, const RotaryPair& from_angles, const machines::TablePose& to,
@@ -143,7 +149,9 @@ class ToothBuilder {
   TravelRecord& travel_;
   AxisWords words_;
   std::optional<Diagnostic> error_;
+  double lack_ = 0;
   AxisOperation* operation_ = nullptr;
+  tool::ProofTool tool_;
   std::vector<AxisBlock>* blocks_ = nullptr;
   AxisBlock last_;
   int tooth_ = 0;

@@ -200,6 +200,9 @@ struct NcDialect {
   bool tcp_codes_of_site = false;             ///< the codes are those of the machine file, there are none else
   NcLinesOfText tcp_on, tcp_off;              ///< empty: the dialect has no TCP (or its codes are site data)
   bool tcp_starts_at_zero = false;            ///< the table frame is frozen where TCP starts
+  /// The text has places of the tool alone, tip and axis. What lies between two of them, in which order the axes move
+  /// and where the top of Z is, is the business of a post processor.
+  bool cutter_locations = false;
   std::array<std::string, 3> vector_words{};  ///< ahead of the components of the tool axis; empty: no vectors
   std::string vector_feed;                    ///< instead of `feed` in blocks with a vector
   /// What the control must be set to for TCP, lines for the top of programs and the set-up sheet.

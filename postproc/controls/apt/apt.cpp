@@ -158,6 +158,7 @@ text::NcDialect words() {
   d.max_line = 72;
   d.tcp_on = d.tcp_off = {"MULTAX/ON"};
   d.tcp_starts_at_zero = true;
+  d.cutter_locations = true;
   d.vector_words = {"I", "J", "K"};
   d.coolant = {{machines::Coolant::mist, {"COOLNT/MIST", "COOLNT/OFF"}},
                {machines::Coolant::flood, {"COOLNT/FLOOD", "COOLNT/OFF"}}};
@@ -171,6 +172,6 @@ bool has_offset(std::string_view) { return true; }
 
 }  // namespace
 
-Control apt() { return {words(), {"cldata"}, {"any: the data do not name it", has_offset}, execute_apt, true}; }
+Control apt() { return {words(), {"cldata"}, {"any: the data do not name it", has_offset}, execute_apt}; }
 
 }  // namespace toothpath::controls

@@ -104,7 +104,7 @@ iso::IsoLanguage fanuc_language() {
 WorkOffsets fanuc_offsets() { return {"G54 to G59 and G54.1 P1 to P300", has_offset}; }
 
 Control fanuc() {
-  return {fanuc_words(), {}, fanuc_offsets(), execute, false, std::nullopt, probing::g31_probing, fanuc_acting_comment};
+  return {fanuc_words(), {}, fanuc_offsets(), execute, std::nullopt, probing::g31_probing, fanuc_acting_comment};
 }
 
 }  // namespace toothpath::controls

@@ -63,7 +63,6 @@ Control haas() {
           {},
           {"G54 to G59 and G154 P1 to P99", has_offset},
           execute,
-          false,
           std::nullopt,
           probing::g31_probing,
           fanuc_acting_comment};

@@ -118,7 +118,6 @@ Control heidenhain() {
           {},
           {"the presets 1 to 99, or G54 for preset 1 to G59 for 6, G59.1 for 7 to G59.3 for 9", has_offset},
           execute_heidenhain,
-          false,
           std::nullopt,
           probing::touch_probe_probing,
           heidenhain_acting_comment};

@@ -166,7 +166,6 @@ Control linuxcnc() {
           {},
           {"G54 to G59 and G59.1 to G59.3", has_offset},
           execute,
-          false,
           ToolTable{"program_tools.tbl", tool_table},
           probing::g38_probing,
           linuxcnc_acting_comment,

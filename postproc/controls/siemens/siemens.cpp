@@ -109,7 +109,6 @@ Control siemens() {
           {"sinumerik"},
           {"G54 to G57 and G505 to G599 (G58 and G59 shift single axes)", has_offset},
           execute_siemens,
-          false,
           std::nullopt,
           probing::meas_probing,
           siemens_acting_comment};

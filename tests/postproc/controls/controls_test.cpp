@@ -53,7 +53,7 @@ TEST(Controls, AnAliasIsTheSameControl) {
     for (const auto& alias : c->aliases) {
       const std::string text = replaced(kMachine, "\"linuxcnc\"", "\"" + alias + "\"");
       const auto reading = controls::read_machine_of_text(
-          c->cutter_locations ? replaced(text, "\"none\"", "\"vectors\"") : text, "m.toml");
+          c->words.cutter_locations ? replaced(text, "\"none\"", "\"vectors\"") : text, "m.toml");
       ASSERT_TRUE(reading.machine) << to_text(reading.errors);
       const auto words = controls::dialect_of(*reading.machine);
       ASSERT_TRUE(words);

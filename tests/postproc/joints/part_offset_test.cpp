@@ -211,5 +211,46 @@ TEST(PartOffset, NowhereIsSaid) {
       << refused.error().message;
 }
 
+// Links over a part that stands too high: the error says what is short, and what it names helps.
+TEST(PartOffset, PartTooHighForItsLinksFitsFartherDownAndWithAShorterTool) {
+  machines::Machine m = trunnion();
+  m.chain.linear[2].max_mm = 275;
+  const auto path = sample_path(0.3, 0.1);
+  const auto options = controls::axis_options(*controls::dialect_of(m), m);
+  const auto build = [&](const toothpath::joints::Setup& s, double length) {
+    auto list = tools();
+    list[0].length_mm = length;
+    return toothpath::joints::AxisProgramTestAccess::build(std::vector{path}, list, s, m, 5, kBody, options);
+  };
+  const auto refused = build(standing(), 95);
+  ASSERT_FALSE(refused);
+  const std::string text = refused.error().message;
+  double needed = 0, rises = 0, shorter = 0, lower = 0;
+  const auto number = [&](const char* behind, double& out) {
+    const auto at = text.find(behind);
+    ASSERT_NE(at, std::string::npos) << text;
+    out = std::stod(text.substr(at + std::string(behind).size()));
+  };
+  number("links need the tip of T1 at ", needed);
+  number("it rises to ", rises);
+  number("shorter by ", shorter);
+  number("or the part ", lower);
+  EXPECT_NEAR(rises, 275 - 0.1 - 95, 1e-9);
+  EXPECT_GT(needed, rises);
+  EXPECT_NEAR(shorter, needed - rises, 2e-3);
+  EXPECT_TRUE(build(standing(), 95 - shorter));
+  EXPECT_FALSE(build(standing(), 95 - shorter + 0.01));
+  toothpath::joints::Setup s = standing();
+  s.origin_mm.z() -= lower;
+  s.work_offset_at_mm.z() -= lower;
+  EXPECT_TRUE(build(s, 95));
+  EXPECT_NE(
+      text.find(fmt::format("setup.origin = [3.000, -2.000, {:.3f}] with work_offset_at = [3.000, -2.000, {:.3f}] "
+                            "fits",
+                            s.origin_mm.z(), s.work_offset_at_mm.z())),
+      std::string::npos)
+      << text;
+}
+
 }  // namespace
 }  // namespace toothpath

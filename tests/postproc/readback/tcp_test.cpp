@@ -270,5 +270,46 @@ TEST(TcpReader, Refusals) {
   EXPECT_EQ(r.error().text(), "p:3:1: error: TCP on a machine without TCP (tcp = \"none\")");
 }
 
+// Links over the part take the whole tool: a holder that hangs below the tip while the tool leans stays above it.
+TEST(LinksWithTcp, TakeTheWholeToolOverThePart) {
+  tool::ToolAssembly stubby = tools()[0];
+  stubby.flute_length_mm = 10;
+  stubby.shank_diameter_mm = 4;
+  stubby.stick_out_mm = 18;
+  stubby.holder = {{40, 50, 25}};
+  const std::vector<tool::ToolAssembly> list{stubby};
+  const auto apt = controls::read_machine(std::string(TOOTHPATH_SOURCE_DIR) + "/machines/data/apt_free.toml");
+  ASSERT_TRUE(apt.machine);
+  for (const machines::Machine& m : {tcp_machine("fanuc"), *apt.machine}) {
+    const auto dialect = controls::dialect_of(m);
+    ASSERT_TRUE(dialect);
+    const auto control = controls::control_of(m, standing(), list);
+    ASSERT_TRUE(control);
+    double start[2];
+    for (const double lean : {0.3, 1.4}) {
+      const std::vector<path::ClPath> paths{sample_path(lean, 0.2)};
+      const auto program = joints::AxisProgramTestAccess::build(paths, list, standing(), m, 3, kBody,
+                                                                controls::axis_options(*dialect, m));
+      ASSERT_TRUE(program) << program.error().message;
+      const auto text = text::write_nc(*program, *dialect, {});
+      ASSERT_TRUE(text) << text.error().message;
+      const auto back = readback::read_back(text->text, "p", *control, m, standing(), {.teeth = 3, .keep_all = true});
+      ASSERT_TRUE(back) << back.error().text();
+      const auto clear = readback::check_rapids(back->operations[0], *control, m, standing(), kBody, list);
+      EXPECT_TRUE(clear) << m.dialect << " " << lean << ": " << (clear ? "" : clear.error().message);
+      const auto& blocks = program->operations[0].teeth[0].blocks;
+      const auto on =
+          std::find_if(blocks.begin(), blocks.end(), [](const auto& b) { return b.kind == joints::BlockKind::tcp_on; });
+      ASSERT_NE(on, blocks.end());
+      start[lean > 1 ? 1 : 0] = double(on->words[2]) * std::pow(10.0, -program->format.linear_decimals);
+    }
+    // Of a tool that hardly leans the tip is what is low: 5 mm over the part. The holder hangs
+    // 25 sin(lean) - 43 cos(lean) below it at its upper end; a check follows turns within 0.05 mm and 0.05 rad.
+    EXPECT_NEAR(start[0], 150 + kBody.z_max_mm + 5, 1e-3) << m.dialect;
+    const double hangs = 25 * std::sin(1.4) - 43 * std::cos(1.4), turning = 0.05 * (1 + std::hypot(43, 25));
+    EXPECT_NEAR(start[1], 150 + kBody.z_max_mm + hangs + turning, 1e-3) << m.dialect;
+  }
+}
+
 }  // namespace
 }  // namespace toothpath
