@@ -9,6 +9,7 @@
 #include "machines/toml/regular_file.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/controls/registry.h"
+#include "postproc/joints/clearance.h"
 #include "postproc/joints/time.h"
 #include "postproc/joints/tooth_order.h"
 #include "postproc/text/clamps.h"
@@ -331,6 +332,27 @@ std::pair<text::NcDialect, text::NcHeader> words_with(PostRequest request, const
 }
 
 }  // namespace
+
+std::optional<Diagnostic> no_room_over_part(const job::Job& job, const machines::Machine& machine,
+                                            const joints::ClearanceBody& body) {
+  const auto dialect = controls::dialect_of(machine);
+  if (!dialect || job.operations.empty() || !job.setup) return std::nullopt;
+  joints::AxisOptions options = controls::axis_options(*dialect, machine);
+  if (job.program.tilted_planes) options.tilted_planes = job.where("program.tilted_planes");
+  const tool::ToolAssembly& tool = job.tools[static_cast<std::size_t>(job.operations.front().tool)];
+  const auto room =
+      joints::room_at_start(machine, {job.setup->rotation(), job.setup->origin_mm}, body, options, tool.length_mm);
+  if (!room || *room >= -1e-9) return std::nullopt;
+  const Vec3& at = job.setup->origin_mm;
+  return located(
+      job, "setup.origin",
+      fail(
+          "setup.origin = [{:g}, {:g}, {:g}]: the part with {:g} mm of room for links over it is {:.3f} mm higher than "
+          "the tip of T{} rises, {:g} mm long, with Z at its top, {:g}: lower the part by so much or more, origin and "
+          "work_offset_at alike, or take a shorter tool",
+          at.x(), at.y(), at.z(), options.clearance_margin_mm, -*room, tool.number, tool.length_mm,
+          machine.chain.linear[2].max_mm));
+}
 
 bool takes_contour(const machines::Machine& machine) {
   const auto dialect = controls::dialect_of(machine);

@@ -68,6 +68,11 @@ struct PostRequest {
       std::nullopt;  ///< nothing: the part does not stand on Z of the work offset
 };
 
+/// Nothing: the first tool of the job rises over the part. Else the refusal at setup.origin, before anything is
+/// planned.
+[[nodiscard]] std::optional<Diagnostic> no_room_over_part(const job::Job& job, const machines::Machine& machine,
+                                                          const joints::ClearanceBody& body);
+
 // The contour tolerance that a text allows its control. `posted`: written for the request, its first teeth are there.
 /// The control has words for it, and the machine file states no smoothing of its own.
 [[nodiscard]] bool takes_contour(const machines::Machine& machine);

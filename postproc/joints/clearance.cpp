@@ -50,4 +50,18 @@ double swept_top(const machines::KinematicChain& chain, const GearPlacement& gea
   return top + rise;
 }
 
+std::optional<double> room_at_start(const machines::Machine& machine, const GearPlacement& gear,
+                                    const ClearanceBody& body, const AxisOptions& options, double tool_length_mm) {
+  const machines::KinematicChain& chain = machine.chain;
+  if (!chain.head.empty() && std::any_of(chain.table.begin(), chain.table.end(), [](const machines::RotaryAxis& axis) {
+        return std::abs(axis.direction.z()) < 1;
+      }))
+    return {};
+  std::array<double, 2> start{};
+  if (machine.tcp != machines::TcpMode::none && options.tcp_starts_at_zero && !options.tilted_planes)
+    for (std::size_t k = 0; k < chain.rotary_count(); ++k) start[k] = chain.rotary(k).zero_rad;
+  const double top = chain.linear[2].max_mm - machine.limit_margin.linear_mm;
+  return top - tool_length_mm - body_top(chain, gear, body, start) - options.clearance_margin_mm;
+}
+
 }  // namespace toothpath::joints

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "geometry/base/vec.h"
 #include "machines/kinematic_chain.h"
@@ -25,5 +26,12 @@ struct GearPlacement {
 [[nodiscard]] double swept_top(const machines::KinematicChain& chain, const GearPlacement& gear,
                                const ClearanceBody& body, const std::array<double, 2>& from,
                                const std::array<double, 2>& to, bool index_is_gear_axis);
+
+/// By how much the tip of a tool rises over the body and the room that links ask for, before the rotaries have left the
+/// places in which a program begins [mm]; below 0: no program with this tool first can be made. Empty: a head swings
+/// over a table that leans, and the links decide.
+[[nodiscard]] std::optional<double> room_at_start(const machines::Machine& machine, const GearPlacement& gear,
+                                                  const ClearanceBody& body, const AxisOptions& options,
+                                                  double tool_length_mm);
 
 }  // namespace toothpath::joints

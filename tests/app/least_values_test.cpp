@@ -1,5 +1,7 @@
 // Numbers that are too small or too large for tools, control and words: refused at their keys, and what the message
 // names as enough is enough.
+#include <fmt/format.h>
+
 #include <regex>
 
 #include "tests/app/program.h"
@@ -71,6 +73,30 @@ TEST(LeastValues, AClearanceThatNoFingerMillKeeps) {
   EXPECT_GT(std::stod(most), 0.1);
   const Finished run = run_text(dir, job(most));
   EXPECT_EQ(run.exit_code, 0) << most << "\n" << run.err;
+}
+
+// Refused before anything is planned where the tip does not rise over the part as it is mounted.
+TEST(LeastValues, APartThatStandsTooHighForTheTopOfZ) {
+  const TestDir dir;
+  const auto job = [](double z) {
+    const std::string at = fmt::format("[3.0, -2.0, {:.3f}]", z);
+    return replaced(replaced(file_text(kQuick), "origin = [3.0, -2.0, 120.0]", "origin = " + at),
+                    "work_offset_at = [3.0, -2.0, 0.0]", "work_offset_at = " + at);
+  };
+  const auto refused = [&](double z) {
+    const Finished run = run_text(dir, job(z));
+    EXPECT_EQ(run.exit_code, 3) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(dir / "out/report.json"));
+    std::smatch m;
+    const std::regex high(
+        "job\\.toml:[0-9]+:[0-9]+: error: setup\\.origin = .* is ([0-9.]+) mm higher than the tip of T1");
+    EXPECT_TRUE(std::regex_search(run.err, m, high)) << run.err;
+    return m.empty() ? 0.0 : std::stod(m[1]);
+  };
+  const double higher = refused(600);
+  EXPECT_NEAR(refused(600 - higher + 0.5), 0.5, 2e-3);
+  const Finished run = run_text(dir, job(600 - higher - 0.001));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
 }
 
 }  // namespace

@@ -285,6 +285,8 @@ std::vector<Diagnostic> prepare(Run& run, const RunAsked& asked) {
   auto restart = read_restart(asked.restart, run.job, run.gear.process->part().teeth);
   if (!restart) return {restart.error()};
   run.restart = *restart;
+  if (auto bad = process::no_room_over_part(run.job, run.machine, run.gear.process->link_body(run.machine)))
+    return {*bad};
   return {};
 }
 
