@@ -12,7 +12,6 @@ namespace {
 
 /// Nodes of a profile are divided this often before cusps are measured: the curvature may change within one step-over.
 constexpr int kFiner = 4;
-constexpr int kCuspRounds = 4;
 constexpr int kCrestSteps = 12;
 constexpr double kSameHeight = 1e-3;  // of the asked cusp: both balls leave the same
 // Of the asked cusp: room for what lies between the stations.
@@ -65,11 +64,11 @@ double PassLine::distance(const Vec3& p) const {
   return (away - t * feed - t * t * bend).norm();
 }
 
-PassCount::PassCount(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options)
+PassCount::PassCount(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options, int cusp_rounds)
     : sheet_(sheet), o_(options) {
   count_profiles();
   for (auto& p : profiles_) divide(p.sigma, p.count);
-  for (int round = 0; round < kCuspRounds; ++round) sharpen();
+  for (int round = 0; round < cusp_rounds; ++round) sharpen();
 }
 
 double PassCount::count_at(std::size_t j, double sigma) const {

@@ -43,7 +43,9 @@ struct HighCusp {
 /// are drawn together where it is higher than asked. Holds a reference to the sheet, which must have a station.
 class PassCount {
  public:
-  PassCount(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options);
+  static constexpr int kCuspRounds = 4;
+  /// @param cusp_rounds  how often cusps are measured; 0: counted by the curvature alone, quickly
+  PassCount(const tooth_space::OffsetSheet& sheet, const FinishingOptions& options, int cusp_rounds = kCuspRounds);
 
   /// Passes over the whole profile, one number a station of the sheet. Gaps of the sheet count nothing.
   [[nodiscard]] const std::vector<double>& totals() const { return totals_; }

@@ -12,6 +12,7 @@
 #include "cam/ball/prescribed_axes.h"
 #include "cam/ball/roughing.h"
 #include "cam/ball/sheet_pass.h"
+#include "cam/ball/small_cusps.h"
 #include "cam/ball/tool_direction.h"
 #include "cam/ball/tool_orientation.h"
 #include "cam/path/asked_stock.h"
@@ -86,7 +87,8 @@ class Planner::Work {
     for (std::size_t zone = 0; zone < zones.size(); ++zone) {
       if (const auto* refusal = (*zones[zone]).refused()) {
         PlanRefusal told = *refusal;
-        const bool of_steps = told.key.find(".step_") != std::string::npos;  // another tool helps them little
+        const bool of_steps = told.key.find(".step_") != std::string::npos ||
+                              told.key.find(".scallop") != std::string::npos;  // another tool helps them little
         if (!o_.trial && !of_steps) told.diagnostic.message += what_would_do(n, int(zone));
         return told;
       }
@@ -255,6 +257,8 @@ class Planner::Work {
     f.chord_mm = std::min(f.chord_mm, chord_room(op));
     f.run_out_mm = room;
     f.climb = op.climb;
+    if (auto small = cusps_too_small(out.sheet, f))
+      return PlanRefusal{key_of(n) + "." + small->key, std::move(small->diagnostic)};
     auto planned = plan_finishing(out.sheet, f);
     if (!planned) return PlanRefusal{key_of(n) + ".tool", planned.error()};
     out.passes = std::move(planned->passes);

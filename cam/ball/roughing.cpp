@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cam/ball/small_cusps.h"
 #include "geometry/base/refusals.h"
 
 namespace toothpath::ball {
 namespace {
 
-// Of one tooth space: plan, text and proof of so many take about a minute, and 300 bytes each until they are a program.
-constexpr std::size_t kMostPlaces = 200'000;
 constexpr std::size_t kMostHeld = 1'000'000;  // whatever was estimated
 constexpr int kLayersCounted = 256, kLayersSampled = 5;
 constexpr double kStepUp = 1.05;  // from one step that is tried to the next
