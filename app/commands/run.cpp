@@ -27,7 +27,7 @@ std::vector<Diagnostic> read_inputs(flow::Run& run, const RunRequest& request) {
   run.job = std::move(read).value();
   auto errors = flow::prepare(run, request);
   if (!errors.empty()) return errors;
-  return process::finer_than_the_machine(run.job, run.machine, 0.5 * run.gear.process->part().diameter_mm);
+  return process::finer_than_the_machine(run.job, run.gear.process->taken(run.machine));
 }
 
 /// The files for people and for other programs; the program itself is there already.

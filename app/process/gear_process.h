@@ -22,6 +22,7 @@
 #include "app/job/measured_file.h"
 #include "app/process/cut_flanks.h"
 #include "app/process/gear_of_job.h"
+#include "app/process/least_values.h"
 #include "app/process/opening_and_end.h"
 #include "app/process/program_proof.h"
 #include "app/process/scene.h"
@@ -194,6 +195,10 @@ class GearProcess {
                                            const std::vector<std::string>& assumed, app::StageClock& clock,
                                            std::vector<std::string>& files) const = 0;
 
+  /// What control, words and proof of this machine take of the job's tolerances, at these teeth.
+  [[nodiscard]] virtual Taken taken(const machines::Machine& machine) const {
+    return taken_by(machine, 0.5 * part().diameter_mm);
+  }
   /// To mill it on this machine within these limits. The machine must outlive it.
   [[nodiscard]] virtual std::unique_ptr<GearMilling> milling(const machines::Machine& machine,
                                                              const proof::ProofLimits& limits, const FlankGrid& grid,

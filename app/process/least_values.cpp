@@ -46,9 +46,9 @@ Taken taken_by(const machines::Machine& machine, double radius_mm) {
   return taken;
 }
 
-double planned_gouge(double gouge_mm, const Taken& taken, double chords) {
+double planned_gouge(double gouge_mm, const Taken& taken) {
   const double room = (1 - kProof - kUncounted) * gouge_mm - taken.of_gouge(gouge_mm);
-  return std::clamp(room / chords, kLeastPlanned * gouge_mm, gouge_mm);
+  return std::clamp(room / taken.chords, kLeastPlanned * gouge_mm, gouge_mm);
 }
 
 std::vector<path::MillingOperation> with_room_for_words(std::vector<path::MillingOperation> operations,
@@ -61,8 +61,7 @@ std::vector<path::MillingOperation> with_room_for_words(std::vector<path::Millin
 
 double least_gouge_tolerance(const Taken& taken) {
   return told_that_does(taken.path_mm + taken.words_mm, kStepUp, INFINITY, [&](double mm) {
-    return taken.of_gouge(mm) + taken.turns_mm + kBallChords * planned_gouge(mm, taken, kBallChords) <=
-           (1 - kProof) * mm;
+    return taken.of_gouge(mm) + taken.turns_mm + taken.chords * planned_gouge(mm, taken) <= (1 - kProof) * mm;
   });
 }
 
@@ -75,10 +74,6 @@ double least_allowance(const Taken& taken) {
 std::vector<Diagnostic> finer_than_the_program(const job::Job& job, const Taken& taken, const proof::GougeResult& gouge,
                                                std::span<const proof::ExcessResult> excess) {
   std::vector<Diagnostic> out;
-  if (std::any_of(job.operations.begin(), job.operations.end(), [](const path::MillingOperation& o) {
-        return o.type == path::OperationType::finger_finishing || o.type == path::OperationType::finger_roughing;
-      }))
-    return out;
   const double asked = job.verify.gouge_tolerance_mm;
   if (gouge.bound_mm > asked) {
     const double least = least_gouge_tolerance(taken);

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "app/process/gear_of_job.h"
-#include "app/process/least_values.h"
 #include "cam/path/asked_stock.h"
 #include "geometry/base/angle.h"
 #include "postproc/controls/of_machine.h"
@@ -79,9 +78,7 @@ double word_rounding(const machines::Machine& machine, double radius_mm) {
   return 0.5 * (std::pow(10.0, -format.linear_decimals) + radians(std::pow(10.0, -format.rotary_decimals)) * radius_mm);
 }
 
-std::vector<Diagnostic> finer_than_the_machine(const job::Job& job, const machines::Machine& machine,
-                                               double radius_mm) {
-  const Taken taken = taken_by(machine, radius_mm);
+std::vector<Diagnostic> finer_than_the_machine(const job::Job& job, const Taken& taken) {
   if (taken.step_mm == 0) return {};
   std::vector<Diagnostic> out;
   const double path = taken.path_mm, step = taken.step_mm, off = kSureShare * 0.5 * step,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/job/job.h"
+#include "app/process/least_values.h"
 #include "cam/proof/limits.h"
 #include "machines/machine.h"
 #include "postproc/readback/conditions.h"
@@ -31,8 +32,7 @@ inline constexpr double kFingerMargin = 1.5e-3;
 
 /// Tolerances and allowances that no program of this machine can keep: what its control leaves of the path and the
 /// rounding of the words X Y Z are more. Located at their keys; none where a program may keep them.
-[[nodiscard]] std::vector<Diagnostic> finer_than_the_machine(const job::Job& job, const machines::Machine& machine,
-                                                             double radius_mm);
+[[nodiscard]] std::vector<Diagnostic> finer_than_the_machine(const job::Job& job, const Taken& taken);
 
 /// What the rounding costs the flanks of a line-milled gear, where that is much of the gouge tolerance; nothing where
 /// it is not, and for other gears.

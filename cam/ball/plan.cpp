@@ -368,9 +368,9 @@ class Planner::Work {
     as_stage("tool direction", [&] {
       if (!bodies_) bodies_ = std::make_unique<analytic::BodyTree>(part_);
       if (!prescribed)
-        direction = choose_direction(
-            part_, *bodies_, zone, made.sheet, made.passes, tool,
-            {o_.limits.clearance_mm, kLeastDraft + std::sin(tool.half_angle_rad), turning.allowance_mm});
+        direction = choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool,
+                                     {o_.limits.clearance_mm, o_.clearance_room_mm,
+                                      kLeastDraft + std::sin(tool.half_angle_rad), turning.allowance_mm});
     });
     direction.operation = n;
     direction.zone = zone;

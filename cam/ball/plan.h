@@ -28,6 +28,7 @@ struct PlanOptions {
   proof::ProofLimits
       limits;  ///< of shank and holder the clearance; chords of any operation may use a part of the gouge tolerance
   double rapid_clearance_mm = 2.0;  ///< height of rapids above the blank
+  double clearance_room_mm = 0;     ///< that fixed directions keep beyond the clearance, for words, control and proof
   double link_feed_mm_min = 0;      ///< of moves under feed where nothing can be cut: drawing back, coming down to
                                     ///< where stock may begin; 0, or below that of the operation: as the operation
   double least_tilt_rad =

@@ -64,7 +64,8 @@ class Search {
         few_(some_of(all_, 24)),
         many_(some_of(all_, 400)),
         frame_(pitch_frame(part, zone)),
-        enough_(std::max(kEnough, options.clearance_mm)),
+        needed_(options.clearance_mm + options.room_mm),
+        enough_(std::max(kEnough, needed_)),
         beside_ring_(part.zones() > 1),
         upright_first_(beside_ring_ && part.part().chart().sine == 0) {
     if (beside_ring_ || tool.half_angle_rad > 0) flute_ = flute_body(tool);
@@ -235,17 +236,15 @@ class Search {
     auto& c = m.candidate;
     if (m.least_draft >= o_.least_draft) {
       const Vec3 axis = axis_at(c.lean_rad, c.azimuth_rad);
-      if (c.gap_mm >= o_.clearance_mm && !choice_.fixed) c.gap_mm = gap(axis, many_, c.worst_body);
+      if (c.gap_mm >= needed_ && !choice_.fixed) c.gap_mm = gap(axis, many_, c.worst_body);
       // Some centres lead quickly to a direction; all of them must keep clear in the one that is taken.
-      if (c.gap_mm >= o_.clearance_mm && !choice_.fixed)
-        if (const double least = gap_below(o_.clearance_mm, axis, all_, c.worst_body); least < o_.clearance_mm)
-          c.gap_mm = least;
-      if (c.gap_mm >= o_.clearance_mm && flute_ &&
-          (flute_cuts(axis, many_) || (!choice_.fixed && flute_cuts(axis, all_)))) {
+      if (c.gap_mm >= needed_ && !choice_.fixed)
+        if (const double least = gap_below(needed_, axis, all_, c.worst_body); least < needed_) c.gap_mm = least;
+      if (c.gap_mm >= needed_ && flute_ && (flute_cuts(axis, many_) || (!choice_.fixed && flute_cuts(axis, all_)))) {
         c.gap_mm = 0;
         c.worst_body = flute_->body;
       }
-      c.clear = c.gap_mm >= o_.clearance_mm;
+      c.clear = c.gap_mm >= needed_;
       if (c.clear && !choice_.fixed) take(axis, c, m.least_draft);
     }
     choice_.candidates.push_back(std::move(c));
@@ -293,8 +292,11 @@ class Search {
                   choice_.candidates.size(), degrees(best->lean_rad), best->worst_body,
                   best->gap_mm <= -kDirectionDeepest ? "more than " : "", -best->gap_mm)
             : fmt::format(
-                  "no fixed direction is clear: the best of {} leans {:.1f} deg and its {} keeps {:.4f} of {:.4f} mm",
-                  choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm, o_.clearance_mm);
+                  "no fixed direction is clear: the best of {} leans {:.1f} deg and its {} keeps {:.4f} of {:.4f} mm{}",
+                  choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm, o_.clearance_mm,
+                  best->gap_mm >= o_.clearance_mm
+                      ? fmt::format(", and {:.4f} mm is for words, control and proof", o_.room_mm)
+                      : "");
   }
 
   const analytic::BodyTree& tree_;
@@ -304,6 +306,7 @@ class Search {
   const DirectionOptions& o_;
   std::vector<Vec3> all_, few_, many_;
   PitchFrame frame_;
+  double needed_;                       ///< clearance and room, mm
   double enough_;                       ///< gaps beyond are not measured further, mm
   bool beside_ring_;                    ///< a double helical gear: another ring of teeth stands across the groove,
   bool upright_first_;                  ///< which an axis along that of the gear does not meet

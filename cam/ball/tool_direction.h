@@ -14,6 +14,7 @@ namespace toothpath::ball {
 
 struct DirectionOptions {
   double clearance_mm = proof::ProofLimits{}.clearance_mm;  ///< least gap of shank and holder
+  double room_mm = 0;  ///< kept beyond it: what words, control and proof may take of a gap
   double least_draft =
       0.01;  ///< least cosine between the tool axis and the normals of the surface: the ball, not its shank, cuts
   double allowance_mm = 0;  ///< that stays on all teeth: the flute leaves `path::kPlannedStock` of it

@@ -331,7 +331,7 @@ struct FingerGougeCheck::State {
     Diagnostic diagnostic;
   };
   /// Nothing: the motion may be run.
-  std::optional<MotionFault> fault(const path::ToolMotion& m, const FingerTool& tool) const {
+  std::optional<MotionFault> fault(const path::ToolMotion& m, const FingerTool& tool, double room_mm) const {
     FingerCheckResult one = nothing_yet(tol.clearance_mm);
     MotionDepth walls;
     if (judge_bodies(m, tool, one).among_teeth) walls = judge_poses(m, tool, one);
@@ -345,10 +345,11 @@ struct FingerGougeCheck::State {
       return found(
           MotionFault::rapid, g.worst.front().depth_mm,
           fmt::format("the rapid goes {:.4f} mm into the {}", g.worst.front().depth_mm, g.worst.front().patch));
-    if (g.clearance_mm < tol.clearance_mm)
+    if (g.clearance_mm < tol.clearance_mm + room_mm)
       return found(MotionFault::near, tol.clearance_mm - g.clearance_mm,
-                   fmt::format("the {} comes within {:.4f} mm of the {}, less than {:.4f}", g.closest.body,
-                               g.clearance_mm, g.closest.patch, tol.clearance_mm));
+                   fmt::format("the {} comes within {:.4f} mm of the {}, less than {:.4f}{}", g.closest.body,
+                               g.clearance_mm, g.closest.patch, tol.clearance_mm,
+                               room_mm > 0 ? fmt::format(" and {:.4f} for words and control", room_mm) : ""));
     if (g.bound_mm > tol.gouge_mm)
       return found(MotionFault::cut, g.bound_mm,
                    fmt::format("the cutter goes {:.4f} mm into {}, more than {:.4f}", g.bound_mm,
@@ -462,14 +463,15 @@ RidgeResult FingerGougeCheck::ridge(std::span<const path::ToolMotion> given) con
   return s.ridge(s.cuts_of_first_tooth(local));
 }
 
-Result<proof::CheckedClPath> FingerGougeCheck::approve(path::ClPath path) const {
+Result<proof::CheckedClPath> FingerGougeCheck::approve(path::ClPath path, double room_mm) const {
   const State& s = *state_;
   if (s.error) return *s.error;
   const FingerTool* tool = s.tool_of(path.operation);
   if (!tool) return fail("operation {} is not in the job", path.operation);
   const std::vector<path::ToolMotion> motions = path::motions_of(path);
   std::vector<std::optional<State::MotionFault>> faults(motions.size());
-  tbb::parallel_for(std::size_t{0}, motions.size(), [&](std::size_t k) { faults[k] = s.fault(motions[k], *tool); });
+  tbb::parallel_for(std::size_t{0}, motions.size(),
+                    [&](std::size_t k) { faults[k] = s.fault(motions[k], *tool, room_mm); });
   // What goes wrong first along the path, told where it is worst.
   const State::MotionFault* told = nullptr;
   for (const auto& fault : faults)

@@ -50,9 +50,10 @@ class FingerGougeCheck {
   FingerGougeCheck& operator=(const FingerGougeCheck&) = delete;
 
   /// Passes a path whose poses and straight moves cut no wall and no root deeper than the gouge tolerance, whose shank
-  /// and holder keep their clearance and whose rapids are clear of the blank. Else a verification diagnostic that names
-  /// place and depth. The walls that the path ought to cut are not judged here.
-  [[nodiscard]] Result<proof::CheckedClPath> approve(path::ClPath path) const;
+  /// and holder keep their clearance, and `room_mm` more for what words and control take, and whose rapids are clear of
+  /// the blank. Else a verification diagnostic that names place and depth. The walls that the path ought to cut are not
+  /// judged here.
+  [[nodiscard]] Result<proof::CheckedClPath> approve(path::ClPath path, double room_mm = 0) const;
 
   /// Everything, from motions of any tooth space; runs on all threads, same bytes on any number. The wall and ridge
   /// measurements use those of the first tooth present.

@@ -6,7 +6,6 @@
 namespace toothpath::finger {
 namespace {
 
-constexpr double kBetween = 5e-5;  // mm: what the centre may do between two poses at which it is judged
 constexpr int kMostSamples = 2000;
 
 }  // namespace
@@ -45,7 +44,7 @@ PoseSampling pose_sampling(const bevel_gear::BevelGear& gear, const FingerTool& 
                            1 / (gear.R_i() * gear.sin_delta());
   PoseSampling out;
   out.intervals =
-      std::clamp(static_cast<int>(std::ceil(shift * std::sqrt(curvature / (8 * kBetween)))), 1, kMostSamples);
+      std::clamp(static_cast<int>(std::ceil(shift * std::sqrt(curvature / (8 * kBetweenPoses)))), 1, kMostSamples);
   const double step = shift / out.intervals;
   out.extra_mm =
       curvature * step * step / 8 * tool.walls[0].leverage() + m.deviation_mm + m.axis_deviation * tool.depth_mm;

@@ -9,6 +9,9 @@
 
 namespace toothpath::finger {
 
+/// mm: what the centre may do between two poses at which it is judged.
+inline constexpr double kBetweenPoses = 5e-5;
+
 struct PoseDepth {
   double depth = -1e9;  ///< > 0: into the part, never below the true depth [mm]
   std::string patch;    ///< "wall L", "wall U", "root" or "tip"

@@ -63,6 +63,22 @@ TEST(LeastValues, TeethOfWordsOfThreeDecimalsAreProvenToTheirOwnDepth) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
 }
 
+TEST(LeastValues, AGougeToleranceThatNoFingerMillKeeps) {
+  const TestDir dir;
+  for (const char* machine : {"file = \"xyzac_trt.toml\"", "file = \"fanuc_ac.toml\""}) {
+    const bool small = std::string(machine).find("trt") != std::string::npos;
+    const auto job = [&](const std::string& mm) {
+      const std::string text = replaced(
+          replaced(file_text(kSamples + "/bevel_trunnion.toml"), "gouge_tolerance = 0.002", "gouge_tolerance = " + mm),
+          "file = \"xyzac_trt.toml\"", machine);
+      return small ? text : replaced_all(text, "[0.0, 0.0, 20.0]", "[0.0, 0.0, 120.0]");
+    };
+    const std::string least = number_that(dir, job("0.0006"), "gouge_tolerance", "or more does");
+    const Finished run = run_text(dir, job(least));
+    EXPECT_EQ(run.exit_code, 0) << machine << ": " << least << "\n" << run.err;
+  }
+}
+
 TEST(LeastValues, AClearanceThatNoFingerMillKeeps) {
   const TestDir dir;
   const auto job = [](const std::string& mm) {

@@ -15,6 +15,8 @@
 #include "cam/finger/bodies.h"
 #include "cam/finger/check.h"
 #include "cam/finger/milling.h"
+#include "cam/finger/poses.h"
+#include "cam/finger/reference.h"
 #include "cam/path/motions.h"
 #include "cam/rest/swept_body.h"
 #include "geometry/base/angle.h"
@@ -40,11 +42,11 @@ finger::FingerCheckOptions check_options(const process::FlankGrid& grid) {
 class FingerMilling final : public process::GearMilling {
  public:
   FingerMilling(const job::Job& job, const machines::Machine& machine, const bevel_gear::BevelGear& gear,
-                const proof::ProofLimits& limits, const process::FlankGrid& grid)
+                const proof::ProofLimits& limits, const process::FlankGrid& grid, const process::Taken& taken)
       : job_(job),
         gear_(gear),
         limits_(limits),
-        taken_(process::taken_by(machine, 0)),  // of rotaries nothing is asked
+        taken_(taken),
         gouge_(gear, job.tools, job.operations, limits, check_options(grid)),
         check_(job, machine, limits, gear, gouge_) {
     check_.plan_anew = process::planned_once([this](std::size_t operations) -> process::PlannedMotions {
@@ -82,7 +84,7 @@ class FingerMilling final : public process::GearMilling {
     return out;
   }
   [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override {
-    auto passed = gouge_.approve(path);
+    auto passed = gouge_.approve(path, clearance_room());
     if (passed || !job_.verify.clearance_mm) return passed;
     const auto keeps = most_clearance();
     if (!keeps || *keeps >= limits_.clearance_mm) return passed;
@@ -121,26 +123,29 @@ class FingerMilling final : public process::GearMilling {
   [[nodiscard]] sheet::OtherSurface beside_the_grid() const override { return {kRootShare}; }
 
  private:
-  /// The largest clearance that all paths keep, less what words round, downwards to `kToldClearance`. Nothing: they are
-  /// refused for something else, too.
+  /// The largest clearance that all paths keep with room for words and control, downwards to `kToldClearance`. Nothing:
+  /// they are refused for something else, too.
   [[nodiscard]] std::optional<double> most_clearance() const {
     const auto keep = [&](double clearance_mm) {
       proof::ProofLimits limits = limits_;
       limits.clearance_mm = clearance_mm;
       const finger::FingerGougeCheck check(gear_, job_.tools, job_.operations, limits);
-      return std::all_of(plans_.begin(), plans_.end(),
-                         [&](const finger::FingerPlan& plan) { return bool(check.approve(plan.path)); });
+      return std::all_of(plans_.begin(), plans_.end(), [&](const finger::FingerPlan& plan) {
+        return bool(check.approve(plan.path, clearance_room()));
+      });
     };
     double low = 0, high = limits_.clearance_mm;
     if (!keep(low)) return std::nullopt;
     while (high - low > kToldClearance) (keep(0.5 * (low + high)) ? low : high) = 0.5 * (low + high);
-    return std::max(0.0, std::floor((low - taken_.words_mm) / kToldClearance) * kToldClearance);
+    return std::floor(low / kToldClearance) * kToldClearance;
   }
+  /// What a gap of shank and holder may lose from plan to proof.
+  [[nodiscard]] double clearance_room() const { return taken_.of_gouge(limits_.gouge_mm) + taken_.turns_mm; }
 
   [[nodiscard]] Result<finger::FingerPlan> plan_of(std::size_t n) const {
     const auto& operation = job_.operations[n];
     proof::ProofLimits planned = limits_;
-    planned.gouge_mm = process::planned_gouge(limits_.gouge_mm, taken_, process::kFingerChords);
+    planned.gouge_mm = process::planned_gouge(limits_.gouge_mm, taken_);
     return finger::plan_finger_operation(gear_, job_.tools[std::size_t(operation.tool)], operation, int(n), planned);
   }
 
@@ -262,11 +267,19 @@ class FingerProcess final : public BevelProcess {
     }
     return out;
   }
+  /// The proof counts a shift of the centre with its leverage, and what may lie between two poses.
+  [[nodiscard]] process::Taken taken(const machines::Machine& machine) const override {
+    process::Taken out = BevelProcess::taken(machine);
+    const double lever = finger::centre_leverage(bevel());
+    out.proof_mm = (std::hypot(lever, 1) - 1) * out.words_mm + lever * finger::kBetweenPoses + kFingerMotionTolerance;
+    out.chords = process::kFingerChords;
+    return out;
+  }
   [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine,
                                                               const proof::ProofLimits& limits,
                                                               const process::FlankGrid& grid,
                                                               app::StageClock&) const override {
-    return std::make_unique<FingerMilling>(job(), machine, bevel(), limits, grid);
+    return std::make_unique<FingerMilling>(job(), machine, bevel(), limits, grid, taken(machine));
   }
 };
 

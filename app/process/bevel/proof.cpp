@@ -17,10 +17,6 @@
 namespace toothpath::bevel {
 namespace {
 
-/// mm and rad: proven distance of a read-back motion from its straight line. Half of a face gear's: it counts in the
-/// bound of the gouge and in that of the material left, which has 1.5 um above the chords; a face gear's left material
-/// is measured and does not contain it.
-constexpr double kFingerMotionTolerance = 5e-5;
 constexpr double kRoundedLinear =
     2.5e-3;                          // mm and deg: an axis that changes less stands still (words of three decimals)
 constexpr double kAlongAxis = 0.05;  // a move with less across the axis, as a share, is an engage or retract

@@ -13,6 +13,11 @@
 
 namespace toothpath::bevel {
 
+/// mm and rad: proven distance of a read-back motion from its straight line. Half of a face gear's: it counts in the
+/// bound of the gouge and in that of the material left, which has 1.5 um above the chords; a face gear's left material
+/// is measured and does not contain it.
+inline constexpr double kFingerMotionTolerance = 5e-5;
+
 /// Axes that change in blocks along the path; moves along the tool axis (engage, retract) are left out.
 struct MovingAxes {
   std::array<char, 5> letter{};               ///< of every axis that moves in any of them, 0 of the others

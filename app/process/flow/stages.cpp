@@ -206,7 +206,7 @@ Status prove_parts(Run& run, const proof::ProofLimits& limits, const process::Po
 std::optional<Diagnostic> too_fine(const Run& run, const joints::AxisProgram& program,
                                    const process::ProgramProof& proof) {
   const double radius = 0.5 * run.gear.process->part().diameter_mm;
-  process::Taken taken = process::taken_by(run.machine, radius);
+  process::Taken taken = run.gear.process->taken(run.machine);
   if (!program.turns_in_cuts)  // the angles of the teeth alone
     taken.turns_mm = std::max(0.0, program.rounding_bound_mm - taken.words_mm);
   auto refused = process::finer_than_the_program(run.job, taken, proof.gouge, proof.excess);

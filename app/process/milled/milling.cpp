@@ -26,11 +26,21 @@ cut::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {
   return options;
 }
 
-plan::Options plan_options(const proof::ProofLimits& limits, const machines::Machine& machine, double outer_radius_mm) {
+/// What a gap of shank and holder may lose from plan to proof.
+double clearance_room(const proof::ProofLimits& limits, const machines::Machine& machine, double outer_radius_mm,
+                      const std::vector<tool::ToolAssembly>& tools) {
+  double longest = 0;
+  for (const tool::ToolAssembly& tool : tools) longest = std::max(longest, tool.stick_out_mm);
+  const process::Taken taken = process::taken_by(machine, outer_radius_mm + longest);
+  return limits.proof_mm + taken.of_gouge(limits.gouge_mm) + taken.turns_mm;
+}
+
+plan::Options plan_options(const proof::ProofLimits& limits, const machines::Machine& machine, double outer_radius_mm,
+                           const std::vector<tool::ToolAssembly>& tools) {
   plan::Options options;
   options.limits = limits;
-  options.limits.gouge_mm =
-      process::planned_gouge(limits.gouge_mm, process::taken_by(machine, outer_radius_mm), process::kBallChords);
+  options.clearance_room_mm = clearance_room(limits, machine, outer_radius_mm, tools);
+  options.limits.gouge_mm = process::planned_gouge(limits.gouge_mm, process::taken_by(machine, outer_radius_mm));
   options.link_feed_mm_min = std::min(machine.max_cutting_feed, kLinkFeed);
   options.simultaneous_axes = machine.max_simultaneous_axes;
   options.line_bias_mm = line::kBias + kBiasShare * process::word_rounding(machine, outer_radius_mm);
@@ -81,7 +91,7 @@ Milling::Milling(const job::Job& job, const machines::Machine& machine, analytic
     : job_(job),
       modified_(modified ? modified->zones : std::vector<report::ModifiedFlanks::Zone>{}),
       limits_(limits),
-      options_(plan_options(limits, machine, body.links.radius_mm)),
+      options_(plan_options(limits, machine, body.links.radius_mm, job.tools)),
       planned_operations_(
           process::with_room_for_words(job.operations, process::taken_by(machine, body.links.radius_mm))),
       part_(std::move(part)),

@@ -98,6 +98,39 @@ TEST(Direction, OnePlaceInTheWayCounts) {
   }
 }
 
+// Words and proof take a little of every gap: a direction that has no room for them is not taken.
+TEST(Direction, RoomForTheWordsIsKeptBeyondTheClearance) {
+  const face_gear::FaceGear gear = test::made(test::small_spur());
+  const auto& zone = gear.rings().front().zone;
+  const double R = 0.4, middle = 0.5 * (zone.inner_radius_mm + zone.outer_radius_mm);
+  auto tool = test::ball_mill(2 * R, 1.2, 2 * R, 1.5, 60);
+  const analytic::GearDistance part(face_gear::part_of(gear), 10);
+  const analytic::BodyTree tree(part);
+  const tooth_space::OffsetSheet sheet(part.space(0), R, zone.inner_radius_mm, zone.outer_radius_mm, 17);
+  const double azimuth = 0.5 * kTwoPi / gear.parameters().teeth;
+  std::vector<ball::BallPass> passes(1);
+  passes[0].points.push_back(
+      {Vec3(middle * std::cos(azimuth), middle * std::sin(azimuth), gear.lowest_root() + R + 0.1), Vec3::Zero(),
+       false});
+  const auto choose = [&](double clearance, double room) {
+    ball::DirectionOptions options;
+    options.clearance_mm = clearance;
+    options.room_mm = room;
+    return ball::choose_direction(part, tree, 0, sheet, passes, tool, options);
+  };
+  const auto upright = [&](double clearance, double room) {
+    const auto choice = choose(clearance, room);
+    return choice.fixed && choice.lean_rad == 0;
+  };
+  while (tool.stick_out_mm < 30 && !upright(0.05, 0)) tool.stick_out_mm += 0.5;
+  double least = 0.05, most = 2;
+  ASSERT_TRUE(upright(least, 0));
+  ASSERT_FALSE(upright(most, 0));
+  while (most - least > 1e-4) (upright(0.5 * (least + most), 0) ? least : most) = 0.5 * (least + most);
+  EXPECT_FALSE(upright(least, 1e-3));
+  EXPECT_TRUE(upright(least - 2e-3, 1e-3));
+}
+
 TEST(Body, GapAgainstSampledSurfaces) {
   for (const auto& name : test::gear_names()) {
     const face_gear::FaceGear gear = test::made(test::gear_named(name));
