@@ -14,6 +14,7 @@ constexpr std::size_t kChunk = std::size_t(1) << 14;  // spans that are looked a
 constexpr std::size_t kFirstLooks = 32;               // of them that are measured ahead of the others
 constexpr std::size_t kKeptTeeth = 3;                 // of an operation, for others to repeat
 constexpr std::size_t kKeptSpans = 8 * kChunk;        // of all of them
+constexpr double kFinestThatMayPass = 2e-4;           // mm: ways that are halved where the gap at their middle is enough
 constexpr double kRoundOff = 1e-9;                    // mm: of places of bodies, and of sums of gaps
 constexpr double kAlike = 1e-6;                       // mm: places of linear axes that count as the same
 constexpr double kAlikeTurn = 1e-10;                  // rad: turns of the work; kAlike beyond 10 m of reach
@@ -245,7 +246,8 @@ bool MovesJudge::passes(std::size_t pair, const Range& range, const Span* on_way
   // What halving does not make less.
   const Range still{middle, middle, on_way->off_mm, on_way->off_rad};
   const double rest = way(p, still) + (on_way->tcp ? on_way->off_mm : 0);
-  if (far - rest <= options_.finest_mm || gap.measured <= 0) {
+  const bool may_pass = gap.proven - rest >= options_.required_mm;
+  if (far - rest <= (may_pass ? kFinestThatMayPass : options_.finest_mm) || gap.measured <= 0) {
     if (proven > 0 && proven >= options_.required_mm) {
       state.proven = std::min(state.proven, proven);
       return true;

@@ -24,7 +24,7 @@ struct MovesOptions {
   double look_mm = 50;       ///< larger gaps are not told apart
   double share = 0.97;       ///< the proven least gap is no less than this part of the measured one ..
   double apart_mm = 0.1;     ///< .. less this much, and no less than `required_mm` if the true one is not
-  double finest_mm = 0.002;  ///< ways of a gap that are not halved again
+  double finest_mm = 0.002;  ///< ways of a gap that are not halved again, but where that may still prove it
 };
 
 /// Where two bodies come near each other.

@@ -260,6 +260,18 @@ MovesFound judged(const machines::Machine& machine, const std::vector<Body>& bod
   return judge.finish();
 }
 
+// The tip beside the part, a little more than the clearance above the table: that is kept, and told so.
+TEST(Moves, AGapThatIsALittleLargerThanAskedIsProven) {
+  const machines::Machine machine = machine_with(test::ac_table());
+  const std::vector<Body> bodies = bodies_of(machine.chain);
+  const auto along = [&](double gap) {
+    const double z = kLength + gap;
+    return judged(machine, bodies, {{Vec3(90, 0, z), {}}, {Vec3(91, 0, z), {}}});
+  };
+  EXPECT_TRUE(along(0.1008).clear());
+  EXPECT_FALSE(along(0.0998).clear());
+}
+
 TEST(Moves, PlantedCollisionsAreFoundAtTheirLine) {
   const Vec3 up(0, 0, 200);
   struct Case {
