@@ -14,10 +14,10 @@ constexpr std::size_t kChunk = std::size_t(1) << 14;  // spans that are looked a
 constexpr std::size_t kFirstLooks = 32;               // of them that are measured ahead of the others
 constexpr std::size_t kKeptTeeth = 3;                 // of an operation, for others to repeat
 constexpr std::size_t kKeptSpans = 8 * kChunk;        // of all of them
-constexpr double kFinestThatMayPass = 2e-4;           // mm: ways that are halved where the gap at their middle is enough
-constexpr double kRoundOff = 1e-9;                    // mm: of places of bodies, and of sums of gaps
-constexpr double kAlike = 1e-6;                       // mm: places of linear axes that count as the same
-constexpr double kAlikeTurn = 1e-10;                  // rad: turns of the work; kAlike beyond 10 m of reach
+constexpr double kFinestThatMayPass = 2e-4;  // mm: ways that are halved where the gap at their middle is enough
+constexpr double kRoundOff = 1e-9;           // mm: of places of bodies, and of sums of gaps
+constexpr double kAlike = 1e-6;              // mm: places of linear axes that count as the same
+constexpr double kAlikeTurn = 1e-10;         // rad: turns of the work; kAlike beyond 10 m of reach
 
 machines::Joints joints_of(const std::array<double, 5>& q) { return {Vec3(q[0], q[1], q[2]), {q[3], q[4]}}; }
 

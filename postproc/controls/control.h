@@ -37,7 +37,7 @@ struct Control {
   text::NcDialect words;
   std::vector<std::string> aliases;  ///< other names that a machine file may use
   WorkOffsets offsets;
-  readback::NcExecute execute = nullptr;  ///< executes its text; shares nothing with what writes it
+  readback::NcExecute execute = nullptr;               ///< executes its text; shares nothing with what writes it
   std::optional<ToolTable> tool_table = std::nullopt;  ///< none: tools are entered at the control
   probing::ProbingWords probe = nullptr;               ///< a probing program in its words; null: it has none
   readback::FindActingComment acting_comment =

@@ -122,7 +122,8 @@ class ToothBuilder {
   void push_turn(const RotaryPair& rotaries);
   void push_turn_block(const RotaryPair& rotaries);
   [[nodiscard]] RotaryPair zero_rotaries() const;
-  /// Height over the part, table frame, at which the whole tool passes while the rotaries go from one pair to the other.
+  /// Height over the part, table frame, at which the whole tool passes while the rotaries go from one pair to the
+  /// other.
   [[nodiscard]] double link_height(const RotaryPair& from, const RotaryPair& to) const;
   /// Least height of the tip over the part while the tool axis rises by `up` or more.
   [[nodiscard]] double room_over_part(double up, bool turns) const;

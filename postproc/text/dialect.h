@@ -197,9 +197,9 @@ struct NcDialect {
   int (*origin_parameter)(int number) = nullptr;
 
   // TCP.
-  bool tcp_codes_of_site = false;             ///< the codes are those of the machine file, there are none else
-  NcLinesOfText tcp_on, tcp_off;              ///< empty: the dialect has no TCP (or its codes are site data)
-  bool tcp_starts_at_zero = false;            ///< the table frame is frozen where TCP starts
+  bool tcp_codes_of_site = false;   ///< the codes are those of the machine file, there are none else
+  NcLinesOfText tcp_on, tcp_off;    ///< empty: the dialect has no TCP (or its codes are site data)
+  bool tcp_starts_at_zero = false;  ///< the table frame is frozen where TCP starts
   /// The text has places of the tool alone, tip and axis. What lies between two of them, in which order the axes move
   /// and where the top of Z is, is the business of a post processor.
   bool cutter_locations = false;

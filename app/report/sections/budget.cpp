@@ -28,14 +28,15 @@ double left_um(const SectionInput& input) {
   return kUm * all.bound_mm;
 }
 
-/// The worst of the operations that finish: bending adds to what they leave.
+/// The worst of the operations that finish: bending adds to what they leave, never more than the stock that bends them.
 std::optional<double> bending_um(const SectionInput& input) {
   std::optional<double> worst;
   for (const report::OperationReport& o : input.report.operations) {
     const auto n = static_cast<std::size_t>(o.operation);
     if (n >= input.job.operations.size() || !input.job.operations[n].finishes() || !o.cutting || !o.cutting->load)
       continue;
-    worst = std::max(worst.value_or(0), kUm * o.cutting->load->deflection_mm);
+    const double bends_mm = o.cutting->load->deflection_mm;
+    worst = std::max(worst.value_or(0), kUm * std::min(bends_mm, o.cutting->stock_mm.value_or(bends_mm)));
   }
   return worst;
 }

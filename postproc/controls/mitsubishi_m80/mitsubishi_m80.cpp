@@ -28,8 +28,8 @@ Status execute(std::string_view text, const std::string& file, const readback::N
 }  // namespace
 
 Control mitsubishi_m80() {
-  return {words(), {"mitsubishi", "m80"}, fanuc_offsets(), execute, std::nullopt, probing::g31_probing,
-          fanuc_acting_comment};
+  return {words(),      {"mitsubishi", "m80"}, fanuc_offsets(),     execute,
+          std::nullopt, probing::g31_probing,  fanuc_acting_comment};
 }
 
 }  // namespace toothpath::controls
