@@ -162,7 +162,7 @@ TEST(LineRuns, OneAndTwoThreadsGiveTheSameProgram) {
 
 /// The program of `job` with a Z of its last tooth 0.1 mm lower, and the line of that word.
 std::pair<std::string, int> with_a_deep_cut(std::string text) {
-  const std::size_t tooth = text.rfind("(TOOTH "), feed = text.find("G93", tooth),
+  const std::size_t tooth = text.rfind("(TOOTH "), feed = text.find("G1 ", tooth),
                     at = text.find(" Z", feed + (text.find("G94", feed) - feed) / 2);
   const std::size_t end = text.find_first_of(" \n", at + 1);
   const double z = std::stod(text.substr(at + 2, end - at - 2));
