@@ -206,7 +206,7 @@ TEST_F(BevelCommand, MovesBesideTheTeethAreProven) {
   const auto clean = program();
   std::vector<std::size_t> retracts;
   for (std::size_t i = 0; i < clean.size(); ++i)
-    if (clean[i].starts_with("G53 G0 Z")) retracts.push_back(i);
+    if (std::regex_search(clean[i], std::regex("^(N[0-9]+ )?G53 G0 Z"))) retracts.push_back(i);
   ASSERT_EQ(retracts.size(), 4u) << "ahead of and behind the teeth of both operations";
   for (const std::size_t at : {retracts[1], retracts[3]}) {
     auto lines = clean;
