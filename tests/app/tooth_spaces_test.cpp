@@ -314,16 +314,17 @@ std::string tooth_line(int k) { return fmt::format("(TOOTH {})", k); }
 /// Those of the first operation, a sub-program.
 Passes roughing_passes(const Lines& lines) { return passes_between(lines, "o100 sub", "o100 endsub"); }
 
-// A roughing pass is dropped: nothing is gouged, the finished surface is right, the tool runs through what stands.
+// The passes of the first layers are dropped: nothing is gouged, the finished surface is right, the tool runs through
+// what stands.
 TEST(PassesThatAreMissing, AreFoundByTheirLoad) {
   const Made& made = Made::of("3.0, -2.0", "index_loop = true");
   const auto passes = roughing_passes(made.lines());
-  for (const std::size_t pass : {0, 1}) {
+  for (const std::size_t count : {passes.size() / 2, passes.size() - 1}) {
     Lines lines = made.lines();
-    const auto [first, last] = passes.at(pass);
-    lines.erase(lines.begin() + first, lines.begin() + last);
+    for (std::size_t pass = count; pass-- > 0;)
+      lines.erase(lines.begin() + passes[pass].first, lines.begin() + passes[pass].second);
     const Verdict found = made.check(lines);
-    expect_told(found, {"operation 0: at line [0-9]+ .* with a chip of [0-9.]+ times the feed"});
+    expect_told(found, {"operation 0: at line [0-9]+ "});
     EXPECT_EQ(found.reasons.find("left material"), std::string::npos) << found.reasons;
   }
 }
