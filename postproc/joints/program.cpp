@@ -520,14 +520,8 @@ class ProgramBuilder {
   }
   static bool turns_in_cuts(const AxisOperation& op) {
     std::vector<AxisBlock> room;
-    for (const auto& tooth : op.teeth) {
-      const std::vector<AxisBlock>& blocks = tooth.all(room);
-      for (std::size_t i = 1; i < blocks.size(); ++i) {
-        const auto &from = blocks[i - 1].words, &to = blocks[i].words;
-        if (blocks[i].kind == BlockKind::feed && (from[3] != to[3] || from[4] != to[4])) return true;
-      }
-    }
-    return false;
+    return std::any_of(op.teeth.begin(), op.teeth.end(),
+                       [&](const ToothBlocks& tooth) { return turns_in_cut(tooth.all(room)); });
   }
 
   std::span<const path::ClPath* const> paths_;
@@ -559,6 +553,14 @@ Result<AxisProgram> build_from(std::span<const path::ClPath* const> paths, std::
 }
 
 }  // namespace
+
+bool turns_in_cut(const std::vector<AxisBlock>& blocks) {
+  for (std::size_t i = 1; i < blocks.size(); ++i) {
+    const auto &from = blocks[i - 1].words, &to = blocks[i].words;
+    if (blocks[i].kind == BlockKind::feed && (from[3] != to[3] || from[4] != to[4])) return true;
+  }
+  return false;
+}
 
 Result<AxisProgram> build_axis_program(std::span<const proof::CheckedClPath> paths,
                                        std::span<const tool::ToolAssembly> tools, const Setup& setup,

@@ -142,6 +142,9 @@ struct ToothBlocks {
   [[nodiscard]] const std::vector<AxisBlock>& all(std::vector<AxisBlock>& room) const;
 };
 
+/// Some feed block of a tooth moves a rotary.
+[[nodiscard]] bool turns_in_cut(const std::vector<AxisBlock>& blocks);
+
 /// How far a control may leave the path of one operation: the tip, and every rotary with TCP.
 struct CornerGrant {
   double mm = 0, axis_deg = 0;

@@ -31,21 +31,30 @@ std::string comment_text(std::string_view text) {
   return out;
 }
 
-std::string first_words(std::string_view text, std::size_t most) {
-  if (text.size() <= most) return std::string(text);
+namespace {
+
+/// Bytes of the whole words that fit, or of as many letters of a first word that is longer.
+std::size_t fitting(std::string_view text, std::size_t most) {
+  if (text.size() <= most) return text.size();
   const auto blank = text.find_last_of(' ', most);
-  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80U) --most;  // a letter of several bytes
-  const std::string_view kept = text.substr(0, blank == std::string_view::npos || blank == 0 ? most : blank);
-  return std::string(kept.substr(0, kept.find_last_not_of(" ,;-") + 1));
+  if (blank != std::string_view::npos && blank > 0) return blank;
+  while (most > 1 && (static_cast<unsigned char>(text[most]) & 0xC0U) == 0x80U) --most;  // a letter of several bytes
+  return std::max<std::size_t>(most, 1);
+}
+
+}  // namespace
+
+std::string first_words(std::string_view text, std::size_t most) {
+  const std::string_view kept = text.substr(0, fitting(text, most));
+  return std::string(kept.size() == text.size() ? kept : kept.substr(0, kept.find_last_not_of(" ,;-") + 1));
 }
 
 std::vector<std::string> lines_of_words(std::string_view text, std::size_t most) {
   std::vector<std::string> out;
   do {
-    const std::size_t kept = most < text.size() ? text.find_last_of(' ', most) : text.size();
-    const std::size_t end = kept == std::string_view::npos || kept == 0 ? std::max<std::size_t>(most, 1) : kept;
+    const std::size_t end = fitting(text, most);
     out.emplace_back(text.substr(0, end));
-    text.remove_prefix(std::min(text.size(), end));
+    text.remove_prefix(end);
     text.remove_prefix(std::min(text.size(), text.find_first_not_of(' ')));
   } while (!text.empty());
   return out;

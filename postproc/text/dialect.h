@@ -3,13 +3,14 @@
 //
 // Lines are templates: {offset} G54 .., {datum} 1 for G54 and so on, {tool} number, {speed} 1/min, {top} machine Z of
 // the retract, {work_top} the same as a Z word with this tool's length, {z} Z word of the block that switches TCP on,
-// {blend} mm, {blend_axis} deg, {free} a feed where nothing is cut, {teeth}, {label} and {label+1} numbers that belong
-// to the operation alone, {sign} and {frame_sign} "-" or nothing, {turns} the teeth that the index is turned by,
-// {number} and {name} of the program, {id} its name in letters and digits. In the loop over the teeth: {first} place of
-// the order that it begins with, {last} one, {end} the one behind it, {stride} of the order, {tooth} the variable that
-// holds the tooth, {index_axis} letter of the index rotary, {angle} its turn to the tooth where calls stand one by one,
-// {zeros} all axes at 0, {program} number of the sub-program, {operation}. The line "{safe_start}" stands for all lines
-// of `safe_start`, "{corners}" for those of `corners`, "{pick}" for those of `pick` where the order is spread,
+// {blend} mm, {blend_axis} deg, {finish}, {cut} FINISH or ROUGH and {roughs} 0 or 1 of an operation, {free} a feed
+// where nothing is cut, {teeth}, {label} and {label+1} numbers that belong to the operation alone, {sign} and
+// {frame_sign} "-" or nothing, {turns} the teeth that the index is turned by, {number} and {name} of the program, {id}
+// its name in letters and digits. In the loop over the teeth: {first} place of the order that it begins with, {last}
+// one, {end} the one behind it, {stride} of the order, {tooth} the variable that holds the tooth, {index_axis} letter
+// of the index rotary, {angle} its turn to the tooth where calls stand one by one, {zeros} all axes at 0, {program}
+// number of the sub-program, {operation}, {operation_type}. The line "{safe_start}" stands for all lines of
+// `safe_start`, "{corners}" for those of `corners`, "{pick}" for those of `pick` where the order is spread,
 // "{first_tooth}" for the comment that names the line behind it, "{zero_on}" and "{zero_off}" for those of the loop
 // that move the zero of the index rotary. Values are printed in the format of the dialect.
 #pragma once

@@ -18,6 +18,12 @@ constexpr std::size_t kLongestName = 24, kNameLength = 32;  // as a name of a pr
 constexpr std::size_t kLongestHeader = 20;                  // lines
 constexpr double kFreeFeed = 1000;                          // F that goes with G94 where nothing is cut, mm/min
 
+std::string unsigned_text(double value, int decimals, const NcDialect& dialect) {
+  std::string text;
+  numbers::append_fixed(text, numbers::to_fixed(value, decimals), decimals, dialect.point_always);
+  return text;
+}
+
 /// Characters of a comment in one line.
 std::size_t comment_width(const NcDialect& dialect) {
   return dialect.max_line - dialect.comment_open.size() - dialect.comment_close.size();
@@ -36,13 +42,8 @@ bool zero_turns_frame(const joints::AxisProgram& program, const NcDialect& diale
 
 void set_corner_values(NcLines::Values& values, const CornerWords& corners, const joints::AxisProgram& program,
                        const NcDialect& dialect) {
-  const auto text = [&](double v, int decimals) {
-    std::string s;
-    numbers::append_fixed(s, numbers::to_fixed(v, decimals), decimals, dialect.point_always);
-    return s;
-  };
-  values["blend"] = text(corners.blend_mm, 6);
-  values["blend_axis"] = text(corners.axis_deg, 4);
+  values["blend"] = unsigned_text(corners.blend_mm, 6, dialect);
+  values["blend_axis"] = unsigned_text(corners.axis_deg, 4, dialect);
   values["roughs"] = corners.wide ? "1" : "0";
   values["cut"] = corners.wide ? "ROUGH" : "FINISH";
   const bool tcp = program.tcp != machines::TcpMode::none;
@@ -50,11 +51,7 @@ void set_corner_values(NcLines::Values& values, const CornerWords& corners, cons
 }
 
 NcLines::Values program_values(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
-  const auto unsigned_value = [&](double v, int decimals) {
-    std::string s;
-    numbers::append_fixed(s, numbers::to_fixed(v, decimals), decimals, dialect.point_always);
-    return s;
-  };
+  const auto unsigned_value = [&](double v, int decimals) { return unsigned_text(v, decimals, dialect); };
   NcLines::Values values;
   values["number"] = std::to_string(header.program_number);
   values["name"] = numbers::first_words(numbers::comment_text(header.job_name), kNameLength);

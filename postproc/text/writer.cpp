@@ -356,19 +356,10 @@ class Writer {
     }
   }
 
-  /// A rotary turns while the tool cuts.
-  static bool turns_in_cut(const std::vector<joints::AxisBlock>& list) {
-    for (std::size_t i = 1; i < list.size(); ++i)
-      if (list[i].kind == joints::BlockKind::feed &&
-          (list[i].words[3] != list[i - 1].words[3] || list[i].words[4] != list[i - 1].words[4]))
-        return true;
-    return false;
-  }
-
   // Blocks of one tooth; begins and ends in G94. Inverse time where a rotary turns in a cut; else F is that of the tip.
   void blocks(const std::vector<joints::AxisBlock>& list, IndexWord index) {
     inverse_time_ = false;
-    cuts_turn_ = turns_in_cut(list);
+    cuts_turn_ = joints::turns_in_cut(list);
     for (std::size_t i = 0; i < list.size() && !error_; ++i) {
       const joints::AxisBlock& b = list[i];
       if (i > 0 && !program_.planes) note_unwinding(list[i - 1], b);

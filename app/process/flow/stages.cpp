@@ -170,11 +170,10 @@ class Attempts {
       granted = contour_to_grant(request_, narrow->posted, limits_.gouge_mm - narrow->proof.gouge.bound_mm);
       if (!granted) return narrow;
     }
-    for (const bool wide_roughing : {leaves_allowance(run_.job), false}) {
-      auto wide = make(granted, wide_roughing);
-      if (wide && wide->proof.reasons.empty()) return wide;
-      if (!wide_roughing) break;
-    }
+    const auto holds = [](const Result<Attempt>& made) { return made && made->proof.reasons.empty(); };
+    if (leaves_allowance(run_.job))
+      if (auto wide = make(granted, true); holds(wide)) return wide;
+    if (auto wide = make(granted); holds(wide)) return wide;
     return make(std::nullopt);
   }
   /// Why the tolerance of the job is too wide; nothing: it is not.

@@ -1,11 +1,13 @@
 #include <cmath>
 
+#include "app/base/units.h"
 #include "app/report/sections/sections.h"
 
 namespace toothpath::sections {
 namespace {
 
-constexpr double kUm = 1000;
+using app::um;
+
 constexpr int kFirstClass = 1, kLastClass = 11;  // of ISO 1328-1
 
 /// Of the ledger: measured where it was, else predicted.
@@ -24,8 +26,8 @@ double left_um(const SectionInput& input) {
     if (finding.key == "left_um")
       for (const auto& [region, value] : finding.details)
         if (const double* flank = std::get_if<double>(&value); flank != nullptr && region == "flank")
-          return *flank + kUm * (all.bound_mm - all.max_mm);
-  return kUm * all.bound_mm;
+          return *flank + um(all.bound_mm - all.max_mm);
+  return um(all.bound_mm);
 }
 
 /// The worst of the operations that finish: bending adds to what they leave, never more than the stock that bends them.
@@ -36,7 +38,7 @@ std::optional<double> bending_um(const SectionInput& input) {
     if (n >= input.job.operations.size() || !input.job.operations[n].finishes() || !o.cutting || !o.cutting->load)
       continue;
     const double bends_mm = o.cutting->load->deflection_mm;
-    worst = std::max(worst.value_or(0), kUm * std::min(bends_mm, o.cutting->stock_mm.value_or(bends_mm)));
+    worst = std::max(worst.value_or(0), um(std::min(bends_mm, o.cutting->stock_mm.value_or(bends_mm))));
   }
   return worst;
 }
@@ -54,12 +56,12 @@ std::string length_text(const SectionInput& input) {
   if (!too_long) return "";
   return fmt::format(
       "not in the sum: 1 um of length is up to {:.2f} um on a flank; the limits hold from -{} to +{:.2f} um",
-      flank_share, too_short ? fmt::format("{:.2f}", kUm * *too_short) : std::string("any"), kUm * *too_long);
+      flank_share, too_short ? fmt::format("{:.2f}", um(*too_short)) : std::string("any"), um(*too_long));
 }
 
 /// A class is sqrt(2) times the one below it: ISO 1328-1.
 std::string reached_text(double sum_um, const job::VerifySettings& verify) {
-  const double asked_um = kUm * *verify.form_tolerance_mm;
+  const double asked_um = um(*verify.form_tolerance_mm);
   std::string out = fmt::format("{:.2f} um asked: {}", asked_um, sum_um <= asked_um ? "reached" : "not reached");
   if (!verify.iso_class) return out;
   const int reached = *verify.iso_class + static_cast<int>(std::ceil(2 * std::log2(sum_um / asked_um) - 1e-9));
@@ -77,7 +79,7 @@ report::Section budget(const SectionInput& input) {
   section.id = "budget";
   section.sheet_rows = 0;
   section.columns = {"part", "um", "how it is known"};
-  const double deep = kUm * std::max(0.0, input.report.gouge->bound_mm), left = left_um(input);
+  const double deep = um(std::max(0.0, input.report.gouge->bound_mm)), left = left_um(input);
   const auto row = [&](const char* part, double um, const std::string& how) {
     section.rows.push_back({part, fmt::format("{:.2f}", um), how});
   };
@@ -99,9 +101,9 @@ report::Section budget(const SectionInput& input) {
     section.rows.push_back({"length of the tool", "", length});
   section.rows.push_back({"machine", "", "not in the sum: study machine-errors tells what its errors cost"});
   section.note =
-      "The deviation of a flank lies within \"together\" where tool, machine and clamping are as the job says. The "
-      "class "
-      "is that of the profile form f_f_alpha of ISO 1328-1, the standard of cylindrical gears.";
+      "\"Together\" is the sum of what is proven, stated and estimated, where machine and clamping are as the job "
+      "says. "
+      "The class is that of the profile form f_f_alpha of ISO 1328-1, the standard of cylindrical gears.";
   return section;
 }
 

@@ -74,25 +74,39 @@ TEST(Direction, TheFluteStaysOutOfTheOtherRing) {
   EXPECT_TRUE(check.passes(check.check(job.motions(), job.tool_of_operation())));
 }
 
+/// A tooth space of a small spur gear, and a ball mill whose holder is near.
+struct SpaceOfASpur {
+  static constexpr double kBall = 0.4;
+  const face_gear::FaceGear gear = test::made(test::small_spur());
+  const face_gear::FaceGearZone& zone = gear.rings().front().zone;
+  tool::ToolAssembly tool = test::ball_mill(2 * kBall, 1.2, 2 * kBall, 1.5, 60);
+  const analytic::GearDistance part{face_gear::part_of(gear), 10};
+  const analytic::BodyTree tree{part};
+  const tooth_space::OffsetSheet sheet{part.space(0), kBall, zone.inner_radius_mm, zone.outer_radius_mm, 17};
+
+  [[nodiscard]] Vec3 at(double z) const {
+    const double middle = 0.5 * (zone.inner_radius_mm + zone.outer_radius_mm),
+                 azimuth = 0.5 * kTwoPi / gear.parameters().teeth;  // space 0 lies between teeth 0 and 1
+    return {middle * std::cos(azimuth), middle * std::sin(azimuth), z};
+  }
+  [[nodiscard]] Vec3 in_the_root() const { return at(gear.lowest_root() + kBall + 0.1); }
+  [[nodiscard]] auto choose(const std::vector<ball::BallPass>& passes, const ball::DirectionOptions& options) const {
+    return ball::choose_direction(part, tree, 0, sheet, passes, tool, options);
+  }
+};
+
 // A thousand places above the teeth and one in the root, where the holder meets them in every direction: that one
 // counts, wherever it stands among the others.
 TEST(Direction, OnePlaceInTheWayCounts) {
-  const face_gear::FaceGear gear = test::made(test::small_spur());
-  const auto& zone = gear.rings().front().zone;
-  const double R = 0.4, middle = 0.5 * (zone.inner_radius_mm + zone.outer_radius_mm);
-  auto tool = test::ball_mill(2 * R, 1.2, 2 * R, 1.5, 60);
-  const analytic::GearDistance part(face_gear::part_of(gear), 10);
-  const analytic::BodyTree tree(part);
-  const tooth_space::OffsetSheet sheet(part.space(0), R, zone.inner_radius_mm, zone.outer_radius_mm, 17);
-  const double azimuth = 0.5 * kTwoPi / gear.parameters().teeth;  // space 0 lies between teeth 0 and 1
-  const auto at = [&](double z) { return Vec3(middle * std::cos(azimuth), middle * std::sin(azimuth), z); };
+  SpaceOfASpur space;
   std::vector<ball::BallPass> passes(1);
-  for (int k = 0; k < 1001; ++k) passes[0].points.push_back({at(gear.blank_top() + 20), Vec3::Zero(), false});
-  const auto choose = [&] { return ball::choose_direction(part, tree, 0, sheet, passes, tool, {}); };
+  for (int k = 0; k < 1001; ++k)
+    passes[0].points.push_back({space.at(space.gear.blank_top() + 20), Vec3::Zero(), false});
+  const auto choose = [&] { return space.choose(passes, {}); };
   ASSERT_TRUE(choose().fixed);
   for (const std::size_t among : {0U, 1U, 500U, 501U, 999U, 1000U}) {
     const auto kept = passes;
-    passes[0].points[among].centre = at(gear.lowest_root() + R + 0.1);
+    passes[0].points[among].centre = space.in_the_root();
     EXPECT_FALSE(choose().fixed) << among;
     passes = kept;
   }
@@ -100,29 +114,20 @@ TEST(Direction, OnePlaceInTheWayCounts) {
 
 // Words and proof take a little of every gap: a direction that has no room for them is not taken.
 TEST(Direction, RoomForTheWordsIsKeptBeyondTheClearance) {
-  const face_gear::FaceGear gear = test::made(test::small_spur());
-  const auto& zone = gear.rings().front().zone;
-  const double R = 0.4, middle = 0.5 * (zone.inner_radius_mm + zone.outer_radius_mm);
-  auto tool = test::ball_mill(2 * R, 1.2, 2 * R, 1.5, 60);
-  const analytic::GearDistance part(face_gear::part_of(gear), 10);
-  const analytic::BodyTree tree(part);
-  const tooth_space::OffsetSheet sheet(part.space(0), R, zone.inner_radius_mm, zone.outer_radius_mm, 17);
-  const double azimuth = 0.5 * kTwoPi / gear.parameters().teeth;
+  SpaceOfASpur space;
   std::vector<ball::BallPass> passes(1);
-  passes[0].points.push_back(
-      {Vec3(middle * std::cos(azimuth), middle * std::sin(azimuth), gear.lowest_root() + R + 0.1), Vec3::Zero(),
-       false});
+  passes[0].points.push_back({space.in_the_root(), Vec3::Zero(), false});
   const auto choose = [&](double clearance, double room) {
     ball::DirectionOptions options;
     options.clearance_mm = clearance;
     options.room_mm = room;
-    return ball::choose_direction(part, tree, 0, sheet, passes, tool, options);
+    return space.choose(passes, options);
   };
   const auto upright = [&](double clearance, double room) {
     const auto choice = choose(clearance, room);
     return choice.fixed && choice.lean_rad == 0;
   };
-  while (tool.stick_out_mm < 30 && !upright(0.05, 0)) tool.stick_out_mm += 0.5;
+  while (space.tool.stick_out_mm < 30 && !upright(0.05, 0)) space.tool.stick_out_mm += 0.5;
   double least = 0.05, most = 2;
   ASSERT_TRUE(upright(least, 0));
   ASSERT_FALSE(upright(most, 0));
