@@ -780,7 +780,7 @@ TEST(Run, ThePageTellsWhatTheAccuracyIsMadeOf) {
       EXPECT_TRUE(std::regex_search(page, m, row)) << part;
       return m.empty() ? 0.0 : std::stod(m[1]);
     };
-    const double deep = value("cut too deep"), left = value("left on the flanks"), bends = value("bending of the tool"),
+    const double deep = value("cut too deep"), left = value("left on the flanks"), bends = value("bending"),
                  sum = value("together");
     const auto report = nlohmann::json::parse(file_text(dir / "out/report.json"));
     EXPECT_NEAR(deep, std::max(0.0, report["gouge_um"]["bound"].get<double>()), 0.006);

@@ -55,7 +55,8 @@ std::string length_text(const SectionInput& input) {
   }
   if (!too_long) return "";
   return fmt::format(
-      "not in the sum: 1 um of length is up to {:.2f} um on a flank; the limits hold from -{} to +{:.2f} um",
+      " A tool 1 um too long or short moves a flank by up to {:.2f} um, not in the sum; the limits hold from -{} to "
+      "+{:.2f} um.",
       flank_share, too_short ? fmt::format("{:.2f}", um(*too_short)) : std::string("any"), um(*too_long));
 }
 
@@ -86,24 +87,22 @@ report::Section budget(const SectionInput& input) {
   using enum proof::ErrorSource;
   row("cut too deep", deep, "proven from the program's text");
   row("left on the flanks", left, "proven from the program's text");
-  row("of these: words rounded", ledger_um(input, {rounding}), "ledger");
-  row("of these: corners left by the control", ledger_um(input, {path_blending}), "ledger");
+  row("- words rounded", ledger_um(input, {rounding}), "of these, by the ledger");
+  row("- corners", ledger_um(input, {path_blending}), "of these, by the ledger");
   const double tool = ledger_um(input, {tool_form, half_angle, run_out});
-  if (tool > 0) row("form and run-out of the tool", tool, "as the job states them");
+  if (tool > 0) row("form of the tool", tool, "as the job states them");
   const std::optional<double> bends = bending_um(input);
-  section.rows.push_back({"bending of the tool", bends ? report::estimate(*bends) : std::string("-"),
-                          bends ? "estimated from the cutting force, holder and spindle rigid" : "not estimated"});
+  section.rows.push_back({"bending", bends ? report::estimate(*bends) : std::string("-"),
+                          bends ? "estimated by the force" : "not estimated"});
   const double sum = deep + left + tool + bends.value_or(0);
   row("together", sum,
       input.job.verify.form_tolerance_mm ? reached_text(sum, input.job.verify)
                                          : "nothing is asked: [verify] form_tolerance, or new --class");
-  if (const std::string length = length_text(input); !length.empty())
-    section.rows.push_back({"length of the tool", "", length});
-  section.rows.push_back({"machine", "", "not in the sum: study machine-errors tells what its errors cost"});
   section.note =
-      "\"Together\" is the sum of what is proven, stated and estimated, where machine and clamping are as the job "
-      "says. "
-      "The class is that of the profile form f_f_alpha of ISO 1328-1, the standard of cylindrical gears.";
+      "\"Together\" is the sum of what is proven, stated and estimated; what errors of the machine cost tells study "
+      "machine-errors. The class is that of the profile form f_f_alpha of ISO 1328-1, the standard of cylindrical "
+      "gears." +
+      length_text(input);
   return section;
 }
 
