@@ -658,9 +658,15 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   } else if (auto bad = feed_minutes(m, goal, tip, e.minutes)) {
     return bad;
   }
-  if (e.minutes > kLongestBlock_min)
-    return fmt::format("the block takes {:.6g} min, more than {:g} (a day): is its F right?", e.minutes,
-                       kLongestBlock_min);
+  if (e.minutes > kLongestBlock_min) {
+    std::size_t far = 0;
+    for (std::size_t a = 1; a < 3; ++a)
+      if (std::abs(goal[a] - joints_[a]) > std::abs(goal[far] - joints_[far])) far = a;
+    return fmt::format(
+        "the block takes {:.6g} min, more than {:g} (a day), and {} goes {:.4g} m: is its F right, "
+        "and is no decimal point lost?",
+        e.minutes, kLongestBlock_min, "XYZ"[far], std::abs(goal[far] - joints_[far]) / 1000);
+  }
   retracted_ = m.machine_frame && m.has[2];
   last_line_ = line;
   joints_ = goal;

@@ -357,7 +357,9 @@ TEST(PathFaultsInText, ABlockTakesADayAtMost) {
   };
   EXPECT_EQ(refusal("G1 X144 F0.1\n"), "none");
   EXPECT_NE(refusal("G1 X145 F0.1\n").find("p:9:"), std::string::npos);
-  EXPECT_NE(refusal("G1 X145 F0.1\n").find("the block takes 1450 min, more than 1440 (a day): is its F right?"),
+  EXPECT_NE(refusal("G1 X145 F0.1\n")
+                .find("the block takes 1450 min, more than 1440 (a day), and X goes 0.145 m: is its F right, and is no "
+                      "decimal point lost?"),
             std::string::npos)
       << refusal("G1 X145 F0.1\n");
   for (const char* body : {"G1 X1 F0.000000001\n", "G93\nG1 X0 F0.000000001\nG94\n"})
