@@ -19,7 +19,6 @@ constexpr double kBesideSlack = 0.01;  // mm: of places outside the part, which 
 constexpr int kWider = 30;             // trials of a way across that keeps clear
 constexpr int kLooks = 90;             // at a turn
 constexpr double kBelowTip = 1;        // mm: room over the part of what reaches below the tip
-constexpr double kTurning = 0.05;      // rad, and mm: a check follows turns of the tool as closely as that
 
 /// Words of the rotaries where they stand at their zeros.
 RotaryPair at_zero(const machines::KinematicChain& chain) {
@@ -29,19 +28,13 @@ RotaryPair at_zero(const machines::KinematicChain& chain) {
 }
 }  // namespace
 
-/// The cutting part keeps a little room, shank and holder what the check of a turn takes of it, too.
-double ToothBuilder::room_over_part(double up, bool turns) const {
+double ToothBuilder::room_over_part(double up) const {
   const Vec3 axis(std::sqrt(std::max(0.0, 1 - up * up)), 0, up);
-  double room = job_.options.clearance_margin_mm, arm = 0;
-  for (const tool::RoundedFrustum& body : tool_.cutting) {
+  double room = job_.options.clearance_margin_mm;
+  for (const tool::RoundedFrustum& body : tool_.cutting)
     room = std::max(room, kBelowTip - tool::lowest_z(body, Vec3::Zero(), axis));
-    arm = std::max(arm, std::hypot(body.core.to + body.round, body.widest()));
-  }
   for (const tool::Frustum& body : tool_.bodies)
-    arm = std::max(arm, std::hypot(body.to, std::max(body.radius_from, body.radius_to)));
-  const double least = turns ? std::max(kBelowTip, kTurning * (1 + arm)) : kBelowTip;
-  for (const tool::Frustum& body : tool_.bodies)
-    room = std::max(room, least - tool::lowest_z(body, Vec3::Zero(), axis));
+    room = std::max(room, kBelowTip - tool::lowest_z(body, Vec3::Zero(), axis));
   return room;
 }
 
@@ -53,7 +46,7 @@ double ToothBuilder::link_height(const RotaryPair& from, const RotaryPair& to) c
     least_up = std::min(least_up, chain_.forward(j, words_.length()).axis.z());
     if (from == to) break;
   }
-  return body_top(chain_, job_.gear, job_.body, at_zero(chain_)) + room_over_part(least_up, from != to);
+  return body_top(chain_, job_.gear, job_.body, at_zero(chain_)) + room_over_part(least_up);
 }
 
 /// Zero, of a rotary that rolls over the nearest whole turn.

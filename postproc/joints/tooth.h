@@ -126,7 +126,7 @@ class ToothBuilder {
   /// other.
   [[nodiscard]] double link_height(const RotaryPair& from, const RotaryPair& to) const;
   /// Least height of the tip over the part while the tool axis rises by `up` or more.
-  [[nodiscard]] double room_over_part(double up, bool turns) const;
+  [[nodiscard]] double room_over_part(double up) const;
 
   // postproc/joints/feed.cpp
   void feed_to(const machines::TablePose& from, const RotaryPair& from_angles, const machines::TablePose& to,

@@ -5,12 +5,14 @@
 #include <cmath>
 
 #include "cam/proof/rapid_clearance.h"
+#include "cam/tool/body.h"
 #include "postproc/readback/reader.h"
 
 namespace toothpath::readback {
 namespace {
 
 constexpr std::size_t kTogether = 4096;  // rapids that are followed at a time
+constexpr double kFarEnd = 0.005;        // mm: turns of feeds are followed so closely at the far end of the tool
 
 /// More than one of Z, XY and the rotaries moves.
 bool mixes_axes(const ExecutedMove& a, const ExecutedMove& b) {
@@ -47,6 +49,10 @@ Status check_rapids_outside(const OperationTrace& trace, const NcControl& contro
   const auto found =
       std::find_if(tools.begin(), tools.end(), [&](const tool::ToolAssembly& t) { return t.number == trace.tool; });
   const tool::ToolAssembly tool = found != tools.end() ? *found : bare_tip(trace.tool);
+  double reach = tool.length_mm;  // from the tip; a holder that goes on above the gauge line is the machine's
+  for (const tool::Frustum& body : tool::shank_and_holder(tool))
+    reach = std::max(reach, std::hypot(body.to, std::max(body.radius_from, body.radius_to)));
+  const double axis_rad = kFarEnd / std::max(reach, 5.0);
   // Rapids that follow one another, with the moves on either side that their corners lie on.
   const std::size_t behind = trace.moves.size() - trace.after;
   for (std::size_t i = trace.before; i < behind;) {
@@ -59,7 +65,7 @@ Status check_rapids_outside(const OperationTrace& trace, const NcControl& contro
     OperationTrace stretch{trace.operation, trace.tool, trace.kept_teeth, 0, {}};
     stretch.moves.assign(trace.moves.begin() + std::ptrdiff_t(i < 2 ? 0 : i - 2),
                          trace.moves.begin() + std::ptrdiff_t(std::min(end + 1, trace.moves.size())));
-    const auto motions = tool_motions(stretch, {}, control, machine, setup, 1, {0.001, 1e-3});
+    const auto motions = tool_motions(stretch, {}, control, machine, setup, 1, {0.001, axis_rad});
     if (!motions) return motions.error();
     for (const auto& m : *motions) {
       if (!m.rapid) continue;
