@@ -1,6 +1,7 @@
 #include "app/report/machine_moves.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -60,17 +61,19 @@ std::vector<std::string> help_for(const bodies::MovesFound& found) {
   const auto add = [&](std::string text) {
     if (std::find(out.begin(), out.end(), text) == out.end()) out.push_back(std::move(text));
   };
+  double higher = 0;  // so that all of them keep apart; infinite: no height does
+  for (const bodies::Meeting& m : found.failed) higher = std::max(higher, m.higher_mm.value_or(INFINITY));
+  if (std::isfinite(higher)) add(fmt::format("setup.origin {:g} mm higher, where they keep apart", higher));
   for (const bodies::Meeting& m : found.failed) {
     const auto either = [&](bodies::Kind kind) { return m.first_kind == kind || m.second_kind == kind; };
-    if (either(bodies::Kind::tool))
-      add(fmt::format("setup.origin with the gear farther from \"{}\", or a longer T{}",
-                      m.first_kind == bodies::Kind::tool ? m.second : m.first, m.tool));
-    else if (either(bodies::Kind::work))
-      add(fmt::format("a longer tool than T{} (length, stick_out), or another setup.origin", m.tool));
-    else
-      add(fmt::format(
-          "another setup.origin; or, where \"{}\" and \"{}\" bear on one another, touches in the machine file", m.first,
-          m.second));
+    if (either(bodies::Kind::work)) add(fmt::format("a longer tool than T{} (length, stick_out)", m.tool));
+    else if (either(bodies::Kind::tool)) add(fmt::format("a longer T{}", m.tool));
+    else if (m.neighbours)
+      add(fmt::format("touches in the machine file, where \"{}\" and \"{}\" bear on one another", m.first, m.second));
+    if (std::isfinite(higher)) continue;
+    add(either(bodies::Kind::work) ? "another setup.origin"
+                                   : fmt::format("setup.origin with the gear farther from \"{}\"",
+                                                 m.first_kind == bodies::Kind::tool ? m.second : m.first));
   }
   return out;
 }

@@ -14,10 +14,12 @@ constexpr std::size_t kChunk = std::size_t(1) << 14;  // spans that are looked a
 constexpr std::size_t kFirstLooks = 32;               // of them that are measured ahead of the others
 constexpr std::size_t kKeptTeeth = 3;                 // of an operation, for others to repeat
 constexpr std::size_t kKeptSpans = 8 * kChunk;        // of all of them
-constexpr double kFinestThatMayPass = 2e-4;  // mm: ways that are halved where the gap at their middle is enough
-constexpr double kRoundOff = 1e-9;           // mm: of places of bodies, and of sums of gaps
-constexpr double kAlike = 1e-6;              // mm: places of linear axes that count as the same
-constexpr double kAlikeTurn = 1e-10;         // rad: turns of the work; kAlike beyond 10 m of reach
+constexpr double kFinestThatMayPass = 2e-4;      // mm: ways that are halved where the gap at their middle is enough
+constexpr double kRise = 1, kHighestRise = 400;  // mm: heights that are tried where bodies meet
+constexpr int kLooksOfASpan = 200;               // there
+constexpr double kRoundOff = 1e-9;               // mm: of places of bodies, and of sums of gaps
+constexpr double kAlike = 1e-6;                  // mm: places of linear axes that count as the same
+constexpr double kAlikeTurn = 1e-10;             // rad: turns of the work; kAlike beyond 10 m of reach
 
 machines::Joints joints_of(const std::array<double, 5>& q) { return {Vec3(q[0], q[1], q[2]), {q[3], q[4]}}; }
 
@@ -50,7 +52,7 @@ MovesJudge::MovesJudge(const machines::Machine& machine, std::vector<Body> bodie
       scene_(machine.chain, std::move(bodies)),
       lengths_(std::move(tool_length_mm)),
       options_(options),
-      states_(scene_.pairs().size(), State{options.look_mm, options.look_mm, std::nullopt, std::nullopt}) {
+      states_(scene_.pairs().size(), State{options.look_mm, options.look_mm, std::nullopt, std::nullopt, 0}) {
   if (const machines::Links& links = scene_.links(); links.bed() > 0 && links.joints().front().rotary)
     turn_ = 3 + links.joints().front().axis;
   any_turned_ = std::any_of(scene_.pairs().begin(), scene_.pairs().end(), [&](const Pair& p) { return turns(p); });
@@ -92,6 +94,7 @@ MovesJudge::Span MovesJudge::span_to(const readback::ExecutedMove& move) const {
   span.operation = move.operation;
   span.tooth = move.tooth;
   span.rapid = move.rapid;
+  span.machine = move.machine;
   const auto moves = [&](std::size_t k) { return span.from[k] != span.to[k]; };
   span.box =
       move.rapid && !move.tcp && int(moves(0)) + int(moves(1)) + int(moves(2)) + int(moves(3)) + int(moves(4)) > 1;
@@ -209,6 +212,7 @@ Meeting MovesJudge::meeting(std::size_t pair, const Span& span, const Five& at, 
   m.second = scene_.bodies()[p.second].name;
   m.first_kind = scene_.bodies()[p.first].kind;
   m.second_kind = scene_.bodies()[p.second].kind;
+  m.neighbours = scene_.bodies()[p.second].link == scene_.bodies()[p.first].link + 1;
   m.proven_mm = gap.proven;
   m.measured_mm = gap.measured;
   m.line = span.line;
@@ -337,7 +341,7 @@ void MovesJudge::look_at(std::size_t pair, const Batch& batch) {
   for (const std::size_t k : {p.first, p.second})
     if (scene_.bodies()[k].kind == Kind::tool && scene_.bodies()[k].tool != tool_) return;
   State& state = states_[pair];
-  if (state.failed) return;
+  if (state.failed) return raise(pair, batch);
   // Something near to begin with: what is farther need not be looked at closely.
   const std::size_t count = batch.spans.size(), step = std::max<std::size_t>(1, count / kFirstLooks);
   for (std::size_t k = 0; k < count; k += step) {
@@ -348,6 +352,38 @@ void MovesJudge::look_at(std::size_t pair, const Batch& batch) {
     state.nearest = meeting(pair, span, span.to, gap);
   }
   look(pair, batch, 0, 0, count);
+  if (state.failed) raise(pair, batch);
+}
+
+void MovesJudge::raise(std::size_t pair, const Batch& batch) {
+  const Pair& p = scene_.pairs()[pair];
+  double& higher = states_[pair].higher;
+  if (scene_.bodies()[p.first].kind == Kind::work || scene_.bodies()[p.second].kind == Kind::work) higher = INFINITY;
+  const auto length = lengths_.find(tool_);
+  const double tool = length == lengths_.end() ? 0 : length->second;
+  const auto stands_at = [&](const Span& span, double t) {
+    Five at{};
+    for (std::size_t k = 0; k < 5; ++k) at[k] = (1 - t) * span.from[k] + t * span.to[k];
+    machines::Joints joints = joints_of(at);
+    if (higher > 0 && !span.machine) {
+      const Vec3 tip = machine_.chain.forward(joints, tool).tip_mm + Vec3(0, 0, higher);
+      joints = machine_.chain.linear_for(tip, joints.rotary_rad, tool);
+      for (int i = 0; i < 3; ++i) {
+        const auto& axis = machine_.chain.linear[std::size_t(i)];
+        const double margin = machine_.limit_margin.linear_mm;
+        const double within = std::clamp(joints.linear_mm[i], axis.min_mm + margin, axis.max_mm - margin);
+        if (within != joints.linear_mm[i] && !span.rapid && t == 1) return false;
+        joints.linear_mm[i] = within;  // what stands at the end of a travel stays there
+      }
+    }
+    return scene_.gap_of(p, joints, options_.required_mm + 2 * kRise).proven >= options_.required_mm + kRise;
+  };
+  for (const Span& span : batch.spans) {
+    const double far = (joints_of(span.to).linear_mm - joints_of(span.from).linear_mm).norm();
+    const int looks = span.machine ? 1 : std::clamp(int(far / kRise), 1, kLooksOfASpan);
+    for (int k = 1; k <= looks; ++k)
+      while (higher <= kHighestRise && !stands_at(span, double(k) / looks)) higher += kRise;
+  }
 }
 
 void MovesJudge::flush(Batch& batch, bool turned) {
@@ -378,8 +414,10 @@ MovesFound MovesJudge::finish() {
   found.required_mm = options_.required_mm;
   found.look_mm = options_.look_mm;
   for (const State& state : states_) {
-    if (state.failed) found.failed.push_back(*state.failed);
-    else if (state.nearest) {
+    if (state.failed) {
+      found.failed.push_back(*state.failed);
+      if (state.higher > 0 && state.higher <= kHighestRise) found.failed.back().higher_mm = state.higher;
+    } else if (state.nearest) {
       found.nearest.push_back(*state.nearest);
       found.nearest.back().proven_mm = state.proven;
     }

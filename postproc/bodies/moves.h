@@ -38,6 +38,10 @@ struct Meeting {
   machines::Joints joints;         ///< there
   double depth_mm = 0;             ///< of a collision: how far the second must be moved to be free ..
   Vec3 direction = Vec3::UnitZ();  ///< .. in this direction, machine coordinates
+  bool neighbours = false;         ///< carried by neighbouring links: they may bear on one another
+  /// Of a pair that fails, neither of them the work: how much higher the work must stand on its table so that they keep
+  /// apart, and the axes within their limits, wherever the program was looked at. Nothing: no height does.
+  std::optional<double> higher_mm;
 };
 
 /// What was found about the moves of a program.
@@ -74,6 +78,7 @@ class MovesJudge {
     int line = 0;
     std::int16_t operation = -1, tooth = -1;
     bool rapid = false, box = false, tcp = false;
+    bool machine = false;  // its end does not move with the work
   };
   /// Joints between a least and a greatest, and how far they may be off.
   struct Range {
@@ -83,6 +88,7 @@ class MovesJudge {
   struct State {
     double proven, measured;
     std::optional<Meeting> nearest, failed;
+    double higher = 0;  // of a pair that fails: how high the work must stand for the spans seen so far
   };
   /// Spans that are looked at together, and a tree of ranges over them.
   struct Batch {
@@ -104,6 +110,8 @@ class MovesJudge {
   void look_at(std::size_t pair, const Batch& batch);
   void look(std::size_t pair, const Batch& batch, std::size_t node, std::size_t first, std::size_t last);
   void look_closer(std::size_t pair, const Span& span);
+  /// How much higher the work must stand for the ends of these spans.
+  void raise(std::size_t pair, const Batch& batch);
   /// Is the gap on all of `range` proven to be large enough? Else measured at its middle, where `on_way` says that the
   /// program goes there.
   bool passes(std::size_t pair, const Range& range, const Span* on_way);

@@ -56,6 +56,17 @@ double by_sign(double word, double now) {
 
 Vec3 turned_deg(const Vec3& v, double deg) { return deg == 0 ? v : turned(v, radians(deg)); }
 
+/// What is said of a block that takes longer than a day: its F is wrong, or an axis goes much too far.
+std::string block_of_days(double minutes, const std::array<double, 5>& from, const std::array<double, 5>& to) {
+  std::size_t far = 0;
+  for (std::size_t a = 1; a < 3; ++a)
+    if (std::abs(to[a] - from[a]) > std::abs(to[far] - from[far])) far = a;
+  return fmt::format(
+      "the block takes {:.6g} min, more than {:g} (a day), and {} goes {:.4g} m: is its F right, and is no "
+      "decimal point lost?",
+      minutes, kLongestBlock_min, "XYZ"[far], std::abs(to[far] - from[far]) / 1000);
+}
+
 }  // namespace
 
 int group_of_m(int m) {
@@ -658,15 +669,7 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   } else if (auto bad = feed_minutes(m, goal, tip, e.minutes)) {
     return bad;
   }
-  if (e.minutes > kLongestBlock_min) {
-    std::size_t far = 0;
-    for (std::size_t a = 1; a < 3; ++a)
-      if (std::abs(goal[a] - joints_[a]) > std::abs(goal[far] - joints_[far])) far = a;
-    return fmt::format(
-        "the block takes {:.6g} min, more than {:g} (a day), and {} goes {:.4g} m: is its F right, "
-        "and is no decimal point lost?",
-        e.minutes, kLongestBlock_min, "XYZ"[far], std::abs(goal[far] - joints_[far]) / 1000);
-  }
+  if (e.minutes > kLongestBlock_min) return block_of_days(e.minutes, joints_, goal);
   retracted_ = m.machine_frame && m.has[2];
   last_line_ = line;
   joints_ = goal;

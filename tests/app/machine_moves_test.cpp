@@ -1,5 +1,6 @@
 // Bodies of a machine from outside: samples that are clear, bodies in the way, meshes that are none.
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "geometry/mesh/file.h"
 #include "tests/app/program.h"
@@ -17,11 +18,12 @@ constexpr const char* kPost =
 /// spur_quick on a copy of its machine with `bodies` behind it.
 class MachineMoves : public ::testing::Test {
  protected:
-  Finished run(const std::string& bodies, const std::string& options = {}) {
+  Finished run(const std::string& bodies, const std::string& options = {}, double higher = 0) {
     const std::string machine = file_text(kMachines + "/xyzac_large.toml");
     write_file(dir_ / "m.toml", machine.substr(0, machine.find("\n[[body]]")) + bodies);
+    const std::string job = replaced(file_text(kSamples + "/spur_quick.toml"), "\"xyzac_large.toml\"", "\"m.toml\"");
     write_file(dir_ / "job.toml",
-               replaced(file_text(kSamples + "/spur_quick.toml"), "\"xyzac_large.toml\"", "\"m.toml\""));
+               replaced(job, "[3.0, -2.0, 120.0]", fmt::format("[3.0, -2.0, {:.1f}]", 120 + higher)));
     std::vector<std::string> words = {"run", dir_ / "job.toml", "--out", dir_ / "out"};
     if (!options.empty()) words.push_back(options);
     const Finished done = run_program(words);
@@ -53,9 +55,24 @@ TEST_F(MachineMoves, ABodyInTheWayIsAVerdictWithItsLine) {
   EXPECT_EQ(first["bodies"][0], "post");
   EXPECT_NE(done.err.find(fmt::format("machine: line {}: ", line)), std::string::npos) << done.err;
   EXPECT_NE(done.err.find("and post "), std::string::npos) << done.err;
-  EXPECT_NE(done.err.find("what would help: setup.origin with the gear farther from \"post\""), std::string::npos)
-      << done.err;
   EXPECT_NE(file_text(dir_ / "out/report.html").find("Bodies of the machine"), std::string::npos);
+}
+
+/// A post on the table stands in the way of the tool. The heights that are offered end in a verified program; the way
+/// out of a higher place may need a little more.
+TEST_F(MachineMoves, APlaceThatFitsIsOffered) {
+  const std::string post = replaced(kPost, "of = \"bed\"", "of = \"C\"");
+  double higher = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Finished done = run(post, {}, higher);
+    if (k > 0 && done.exit_code == 0) return;
+    EXPECT_EQ(done.exit_code, 1);
+    std::smatch offer;
+    ASSERT_TRUE(std::regex_search(done.err, offer, std::regex("what would help: setup.origin ([0-9]+) mm higher")))
+        << done.err;
+    higher += std::stod(offer[1]);
+  }
+  FAIL() << higher;
 }
 
 TEST_F(MachineMoves, TheSameFarAwayIsClear) {

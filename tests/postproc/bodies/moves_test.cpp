@@ -336,6 +336,28 @@ TEST(Moves, DepthAndJointsOfACollision) {
   EXPECT_LE(m.measured_mm, 0.1);
 }
 
+/// The height that is offered is enough, and is needed: moves of a part that stands so much higher, or 3 mm less.
+TEST(Moves, AHigherPartKeepsClear) {
+  for (const auto& chain : {test::ac_table(), test::head_table('B')}) {
+    const machines::Machine machine = machine_with(chain);
+    const auto way = [&](double higher) {
+      std::vector<Joints> joints;
+      for (const Vec3& at : {Vec3(90, 0, 200), Vec3(90, 0, 110), Vec3(70, 0, 105), Vec3(70, 0, 200)})
+        joints.push_back({at + Vec3(0, 0, at.z() < 200 ? higher : 0), {}});
+      return joints;
+    };
+    const MovesFound found = judged(machine, bodies_of(machine.chain), way(0));
+    ASSERT_FALSE(found.clear());
+    double higher = 0;
+    for (const Meeting& m : found.failed) {
+      ASSERT_TRUE(m.higher_mm) << m.first << " and " << m.second;
+      higher = std::max(higher, *m.higher_mm);
+    }
+    EXPECT_TRUE(judged(machine, bodies_of(machine.chain), way(higher)).clear()) << higher;
+    EXPECT_FALSE(judged(machine, bodies_of(machine.chain), way(higher - 3)).clear()) << higher;
+  }
+}
+
 TEST(Moves, WhatBearsIsNotLookedAt) {
   machines::Machine machine = machine_with(test::ac_table());
   auto bodies = bodies_of(machine.chain);
