@@ -9,7 +9,7 @@ namespace {
 class RingPart final : public ToothedPart {
  public:
   RingPart(std::shared_ptr<const ToothSpace> space, const RingNumbers& numbers)
-      : space_(std::move(space)), numbers_(numbers) {}
+      : space_(std::move(space)), numbers_(numbers), blank_top_(space_->highest_tip()) {}
 
   [[nodiscard]] int teeth() const override { return numbers_.teeth; }
   [[nodiscard]] int zones() const override { return 1; }
@@ -17,7 +17,7 @@ class RingPart final : public ToothedPart {
   [[nodiscard]] double module_mm() const override { return numbers_.module_mm; }
   [[nodiscard]] double lowest_root() const override { return numbers_.lowest_root; }
   [[nodiscard]] std::optional<double> groove_floor() const override { return {}; }
-  [[nodiscard]] double blank_top() const override { return space_->highest_tip(); }
+  [[nodiscard]] double blank_top() const override { return blank_top_; }
   [[nodiscard]] bool in_blank(const Vec3& p) const override {
     const auto& ring = space_->outline();
     const double s = ring.chart.along(p);
@@ -28,6 +28,7 @@ class RingPart final : public ToothedPart {
  private:
   std::shared_ptr<const ToothSpace> space_;
   RingNumbers numbers_;
+  double blank_top_;  // asked at every place of a tool
 };
 
 }  // namespace
