@@ -116,7 +116,13 @@ std::string part_of_header(std::string_view text) {
 /// Everything that is asked of the program. Errors: what the reader refuses; a program that is read but not safe is
 /// none.
 Status prove(ProgramCheck& check) {
-  if (!check.milling) check.milling = check.gear.process->milling(check.machine, check.limits, {}, check.clock);
+  if (!check.milling) {
+    check.milling = check.gear.process->milling(check.machine, check.limits, {}, check.clock);
+    // Which way was taken where the job leaves it open, the plan knows alone.
+    if (std::any_of(check.job.operations.begin(), check.job.operations.end(), [](const auto& o) { return o.best_way; }))
+      if (auto planned = flow::plan_job(check.job, *check.milling, check.clock, check.progress); !planned)
+        return planned.error();
+  }
   auto bodies =
       flow::bodies_in_machine(check.job, check.machine, *check.gear.process, check.scene ? &*check.scene : nullptr);
   if (!bodies) return bodies.error();

@@ -182,6 +182,12 @@ path::MillingOperation read_line_operation(toml::TableReader& table) {
   operation.left_mm = table.optional_number("left", kScallop);
   if (const auto word = table.optional_word("rotaries", {"both", "one"}))
     operation.rotaries = *word == "both" ? path::MovingRotaries::both : path::MovingRotaries::one;
+  operation.best_way = table.word_or("strategy", {"side", "best"}, "side") == "best";
+  if (operation.best_way && operation.allowance_mm > 0)
+    table.refuse("strategy",
+                 "strategy = \"best\" chooses how flanks are finished, but allowance = {:g} mm leaves stock: leave one "
+                 "of them out",
+                 operation.allowance_mm);
   return operation;
 }
 
@@ -234,6 +240,10 @@ void compare_with_tool(toml::TableReader& table, const path::MillingOperation& o
     table.refuse("scallop", "{} = {} mm is not below {} mm, the radius of tool {}", key, operation.scallop_mm,
                  diameter / 2, tool.number);
   }
+  if (operation.best_way && operation.most_misfit_mm() >= diameter / 2)
+    table.refuse(table.has("left") ? "left" : "strategy",
+                 "left = {} mm is not below {} mm, the radius of tool {}, whose ball end strategy = \"best\" may take",
+                 operation.most_misfit_mm(), diameter / 2, tool.number);
   if (tool.flute_length_mm > 0 && operation.step_down_mm > tool.flute_length_mm)
     table.refuse("step_down", "step_down = {} mm exceeds {} mm, the flute_length of tool {}", operation.step_down_mm,
                  tool.flute_length_mm, tool.number);

@@ -93,6 +93,8 @@ class GearMilling {
   [[nodiscard]] virtual std::vector<proof::DirectionChoice> directions() const = 0;
   /// Passes of the plan for page and report.json; empty where the plan has none to tell.
   [[nodiscard]] virtual std::vector<report::PassReport> passes() const = 0;
+  /// What each way of cutting a line-milled flank takes, and which the plan took.
+  [[nodiscard]] virtual std::vector<report::FlankWaysReport> flank_ways() const { return {}; }
   /// Engagement along the paths of operations that ask for it; empty where none does.
   [[nodiscard]] virtual std::vector<report::EngagementReport> engagement() const { return {}; }
   /// What the plan would have its reader know; warnings of the report.

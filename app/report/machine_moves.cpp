@@ -58,6 +58,7 @@ std::vector<std::string> reasons_of(const machines::Machine& machine, const bodi
 
 std::vector<std::string> help_for(const bodies::MovesFound& found) {
   std::vector<std::string> out;
+  if (found.failed.empty()) return out;
   const auto add = [&](std::string text) {
     if (std::find(out.begin(), out.end(), text) == out.end()) out.push_back(std::move(text));
   };

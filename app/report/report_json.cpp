@@ -323,6 +323,23 @@ void add_sides(Json& operations, const RunReport& r) {
     }
 }
 
+/// What each way of cutting a flank takes, beside the operation that cuts it.
+void add_ways(Json& operations, const RunReport& r) {
+  for (Json& operation : operations)
+    for (const FlankWaysReport& w : r.flank_ways) {
+      if (operation["op"] != w.operation) continue;
+      Json way = {
+          {"zone", w.zone}, {"flank", w.flank}, {"taken", w.by_ball ? "ball" : "side"}, {"tried", Json::array()}};
+      for (const auto& t : w.tried)
+        way["tried"].push_back({{"strips", t.strips}, {"left_um", app::um(t.left_mm)}, {"more", t.more}});
+      if (!w.tried.empty()) way["side_minutes"] = w.side_minutes;
+      way["ball_passes"] = w.ball_passes;
+      way["ball_minutes"] = w.ball_minutes;
+      if (!w.refused.empty()) way["refused"] = svg::valid_utf8(w.refused);
+      operation["ways"].push_back(std::move(way));
+    }
+}
+
 /// What is not computed is null, with the reason beside it.
 void add_cutting(Json& operation, const CuttingLoad& c) {
   for (const char* key : {"force_n", "deflection_um", "compliance_um_n", "chip_um"}) operation[key] = nullptr;
@@ -379,6 +396,7 @@ void add_motion(Json& json, const RunReport& r) {
     if (o.cutting) add_cutting(operations.back(), *o.cutting);
   }
   add_sides(operations, r);
+  add_ways(operations, r);
   json["operations"] = std::move(operations);
   if (r.tooth_stride != 1) json["tooth_order"] = {{"order", "spread"}, {"stride", r.tooth_stride}, {"teeth", r.teeth}};
   for (const joints::ToolUse& use : r.tool_uses) {

@@ -119,6 +119,23 @@ struct PassReport {
   std::optional<SidePass> side = {};  ///< of a pass with the side of a mill
 };
 
+/// What one flank of a line-milled operation takes by the side of its mill and by its ball end. Minutes at the feed of
+/// the contact, all teeth.
+struct FlankWaysReport {
+  int operation = 0, zone = 0, flank = 1;
+  struct Tried {
+    int strips = 1;
+    double left_mm = 0;
+    bool more = false;  ///< it leaves more than that
+  };
+  std::vector<Tried> tried;  ///< with rising strips, the planned one last; empty: the side does not cut it
+  double side_minutes = 0;
+  int ball_passes = 0;  ///< about
+  double ball_minutes = 0;
+  bool by_ball = false;  ///< that was taken
+  std::string refused;   ///< why the other one could not be; empty: it is slower, or was not asked for
+};
+
 /// Where the part has the most room, and set-up origin and work offset there.
 struct TravelRoom {
   choice::TravelOffer offer;
@@ -152,6 +169,7 @@ struct RunReport {
   std::vector<OperationReport> operations;
   std::vector<proof::DirectionChoice> directions;
   std::vector<PassReport> passes;            ///< of one tooth space, where the plan tells them
+  std::vector<FlankWaysReport> flank_ways;   ///< of line milling: what each way takes
   std::vector<EngagementReport> engagement;  ///< of operations that ask for a chip load or an engagement
   std::vector<joints::AxisRange> axes;
   std::optional<PolesReport> poles;                  ///< none where the program comes to no pole

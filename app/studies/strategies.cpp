@@ -230,7 +230,7 @@ page::StudyPage page_of(const job::Job& job, const LineMilledFlanks& flanks, con
                   "operation that it stands for. It finishes with a scallop of {:g} um, what the line may leave. Line "
                   "operations with an allowance become semi-finishing with that allowance and cusps of {:g} of it, at "
                   "least {:g} um.",
-                  app::um(line.most_misfit_mm()), kCuspPerAllowance, app::um(kLeastCusp_mm)),
+                  app::um(line.most_misfit_mm()), path::kCuspPerAllowance, app::um(path::kLeastCusp_mm)),
       fmt::format(
           "tilted ball: the same with a prescribed tool axis, the first of these leans that is not refused: {}; {}; "
           "{}. Outwards is along the teeth, aside is away from the flank that is cut.",
@@ -292,7 +292,8 @@ commands::CommandOutcome study_strategies(const StrategiesRequest& request) {
   if (!output) return commands::failed(output.error());
   auto read = job::read_job_file(request.job_file);
   if (auto* errors = read.refused()) return commands::failed(std::move(*errors));
-  const job::Job& job = read.value();
+  job::Job& job = read.value();
+  for (path::MillingOperation& o : job.operations) o.best_way = false;  // every way is tried
   const auto flanks = line_milled_flanks(job);
   if (!flanks) return commands::failed(flanks.error());
 

@@ -23,23 +23,6 @@ void prescribe(const job::Job& job, const PrescribedLean& lean, MillingOperation
   o.axis_minus = {{middle, lean.outwards_rad, -lean.aside_rad}};
 }
 
-/// What the ball does instead of a line.
-MillingOperation ball_for(const MillingOperation& line) {
-  MillingOperation o = line;
-  o.strips.reset();
-  o.left_mm.reset();
-  o.rotaries.reset();
-  o.regions = {{true, false, false}};
-  if (line.finishes()) {
-    o.type = OperationType::finishing;
-    o.scallop_mm = line.most_misfit_mm();
-  } else {
-    o.type = OperationType::semi_finishing;
-    o.scallop_mm = std::max(kCuspPerAllowance * line.allowance_mm, kLeastCusp_mm);
-  }
-  return o;
-}
-
 }  // namespace
 
 Result<LineMilledFlanks> line_milled_flanks(const job::Job& job) {
@@ -80,7 +63,7 @@ Result<job::Job> with_ball(job::Job job, const LineMilledFlanks& flanks, const P
     if (!tool::serves(tool, tool::CutterUse::ball_end))
       return fail_at(place_of(job, n), "tool {} is a {}: it has no ball end to finish a flank with", tool.number,
                      tool::kind_of(tool).word);
-    o = ball_for(o);
+    o = path::by_ball_end(o);
     if (o.scallop_mm >= tool.radius_mm())
       return fail_at(place_of(job, n), "a scallop of {:g} mm is not below {:g} mm, the radius of tool {}", o.scallop_mm,
                      tool.radius_mm(), tool.number);

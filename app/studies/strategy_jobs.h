@@ -9,9 +9,6 @@
 
 namespace toothpath::studies {
 
-/// Stock left by a ball instead of a line, and the cusps on it: a tenth of the allowance, at least 2 um.
-inline constexpr double kCuspPerAllowance = 0.1, kLeastCusp_mm = 0.002;
-
 /// The line-milled flanks of a job, by index of its operations.
 struct LineMilledFlanks {
   std::size_t finisher = 0;             ///< leaves the finished flank

@@ -74,7 +74,10 @@ struct LineRecord {
 inline constexpr double kPlacesSee = 1.002;
 
 struct LinePass {
-  int zone = 0, side = 1, strip = 0;
+  int zone = 0, side = 1;
+  int strip = 0, strips = 1;  ///< of so many of its flank, from the tip down
+  int number = 0;             ///< of the passes of its zone
+  Rotaries rotaries = Rotaries::both;
   std::vector<StationFigures> stations;  ///< those with a foot in the ring
   std::vector<LineRecord> records;
   double misfit_mm = 0;  ///< worst of all stations and records, smoothing included, bias not

@@ -19,6 +19,7 @@ constexpr double kLastStep = 1e-7;                  // of the module: the step a
 constexpr double kExactEnd = 1e-9;                  // mm: ends of the domain and heights of the ball end
 constexpr double kStandsStill = 1e-8;               // mm: predicted gain at which the best pose is found
 constexpr int kLinearisations = 30;
+constexpr int kLengthSteps = 24;
 constexpr int kSagSteps = 64;        // over the height of a flank
 constexpr double kFirstTrust = 0.1;  // rad of lean in one step; a quarter of it in eps
 
@@ -126,6 +127,23 @@ std::vector<double> sags_of(const FlankTask& flank, double s, double against_per
   return sum;
 }
 
+/// The same of a flank whose tool leans: the least bend at every place, over the length along it. 0 on saddles.
+double least_sag(const FlankTask& flank, double s) {
+  double sum = 0;
+  const double step = flank.depth / kSagSteps;
+  for (int k = 0; k < kSagSteps; ++k) {
+    const auto place = flank.at_depth(s, (k + 0.5) * step);
+    if (!place) return 0;
+    const auto frame = flank.frame(place->on);
+    const auto shape = shape_at(frame, place->on);
+    const auto psi = lean(shape, 0.0);
+    if (!psi || !(std::cos(*psi) > std::cos(kMostTilt))) return 0;
+    sum += std::sqrt(std::abs(shape.along(std::cos(*psi), std::sin(*psi)))) * step * flank.deep.share(s) /
+           (frame.p.dot(flank.up(place->on.p)) * std::cos(*psi));
+  }
+  return sum;
+}
+
 /// Passes of which each leaves about `left_mm`, as far as the bends tell.
 int passes_for(const FlankTask& flank, double against_per_mm, double left_mm) {
   double most = 0;
@@ -185,8 +203,27 @@ std::vector<Strip> strips_of(const FlankTask& flank, int n) {
 }
 
 int strips_for(const FlankTask& flank, double left_mm) { return flank.upright ? passes_for(flank, 0, left_mm) : 1; }
+int strips_about(const FlankTask& flank, double left_mm) {
+  if (flank.upright) return strips_for(flank, left_mm);
+  double most = 0;
+  for (const double s : {flank.s_from, 0.5 * (flank.s_from + flank.s_to), flank.s_to})
+    most = std::max(most, least_sag(flank, s));
+  return std::max(1, int(std::ceil(most / std::sqrt(8 * left_mm))));
+}
 int ball_passes_for(const FlankTask& flank, double ball_radius_mm, double left_mm) {
   return passes_for(flank, 1 / ball_radius_mm, left_mm);
+}
+double length_along(const FlankTask& flank) {
+  double length = 0;
+  Vec3 before = Vec3::Zero();
+  bool joins = false;
+  for (int k = 0; k <= kLengthSteps; ++k) {
+    const auto place = flank.at_depth(flank.s_from + (flank.s_to - flank.s_from) * k / kLengthSteps, 0.5 * flank.depth);
+    if (place && joins) length += (place->on.p - before).norm();
+    joins = place.has_value();
+    if (joins) before = place->on.p;
+  }
+  return length;
 }
 
 std::optional<LineFit::Anchor> LineFit::anchor(double s) const {

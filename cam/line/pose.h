@@ -96,9 +96,14 @@ struct Strip {
 /// Strips of which each leaves about `left_mm`, as far as the bend of the profile tells: of an upright flank. 1 of any
 /// other.
 [[nodiscard]] int strips_for(const FlankTask& flank, double left_mm);
+/// About as many will do, of any flank: 1 where the axis of the mill may lean along a direction in which the flank does
+/// not bend.
+[[nodiscard]] int strips_about(const FlankTask& flank, double left_mm);
 /// Passes of a ball end, side by side over the height of the flank, that leave cusps of about `left_mm`: they lie
 /// sqrt(8 left / (1/R + k)) apart, k > 0 where the profile is convex.
 [[nodiscard]] int ball_passes_for(const FlankTask& flank, double ball_radius_mm, double left_mm);
+/// Along the tooth from end to end of the ring, at half the depth, mm.
+[[nodiscard]] double length_along(const FlankTask& flank);
 
 /// The gap at one height of the axis, beyond the allowance.
 struct GapNode {

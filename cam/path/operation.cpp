@@ -30,6 +30,23 @@ double MillingOperation::feed_for(double steepest, int teeth) const {
   return std::min(chip_load_mm * speed_rpm * teeth / steepest, (finishes() ? 1 : kMostRaise) * feed_mm_min);
 }
 
+MillingOperation by_ball_end(const MillingOperation& line) {
+  MillingOperation o = line;
+  o.strips.reset();
+  o.left_mm.reset();
+  o.rotaries.reset();
+  o.best_way = false;
+  o.regions = {{true, false, false}};
+  if (line.finishes()) {
+    o.type = OperationType::finishing;
+    o.scallop_mm = line.most_misfit_mm();
+  } else {
+    o.type = OperationType::semi_finishing;
+    o.scallop_mm = std::max(kCuspPerAllowance * line.allowance_mm, kLeastCusp_mm);
+  }
+  return o;
+}
+
 std::optional<std::size_t> last_before(const std::vector<MillingOperation>& operations, std::size_t n, Region region) {
   while (n-- > 0)
     if (operations[n].regions[region]) return n;

@@ -67,6 +67,8 @@ struct MillingOperation {
   std::optional<int> strips;               ///< none: the least number that meets `left_mm`
   std::optional<double> left_mm;           ///< largest misfit; none: kDefaultLeft
   std::optional<MovingRotaries> rotaries;  ///< none: the fewest that meet `left_mm`
+  bool best_way =
+      false;  ///< by the ball end of its tool where that is quicker, or where the side leaves more than asked
 
   /// Does it leave the finished surface where it cuts?
   [[nodiscard]] bool finishes() const {
@@ -84,6 +86,12 @@ struct MillingOperation {
   [[nodiscard]] double most_misfit_mm() const { return left_mm.value_or(kDefaultLeft); }
   static constexpr double kDefaultLeft = 5e-3;  ///< mm
 };
+
+/// Stock left by a ball end instead of a side, and the cusps on it: a tenth of the allowance, at least 2 um.
+inline constexpr double kCuspPerAllowance = 0.1, kLeastCusp_mm = 0.002;
+/// What the ball end of its tool does instead of a line milling: finishing with cusps of `left`, or semi-finishing with
+/// the same allowance and cusps as above. Tool, speed, feed and chord tolerance stay.
+[[nodiscard]] MillingOperation by_ball_end(const MillingOperation& line);
 
 /// The operation before `n` that cut a region last, by index; nothing where none did. Roughing cuts all of them.
 [[nodiscard]] std::optional<std::size_t> last_before(const std::vector<MillingOperation>& operations, std::size_t n,

@@ -43,7 +43,7 @@ ball::Leading beside_side(const analytic::GearDistance& part, const line::LinePl
     for (const double off : kOffFlank) {
       ball::LedAxes led;
       for (const line::LinePass& pass : side.passes) {
-        if (pass.zone != zone || pass.strip != side.strips - 1) continue;
+        if (pass.zone != zone || pass.strip + 1 != pass.strips) continue;
         if (pass.side > 0) led.plus = keys_of(pass, ring, frame, off);
         else led.minus = keys_of(pass, ring, frame, -off);
       }

@@ -1,8 +1,11 @@
 #include "cam/plan/milling.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <numeric>
+#include <utility>
 
 #include "cam/analytic/gouge_check.h"
 #include "cam/line/room.h"
@@ -38,16 +41,16 @@ const char* moving_text(line::Rotaries rotaries) {
   return "";
 }
 
-/// What was tried before a number of strips, what that would take by the ball end, and which was taken.
-std::string ways_text(const line::LinePlan& planned) {
-  if (planned.ways.empty()) return "";
-  std::string text = "; the ways:";
-  for (const line::LinePlan::Way& way : planned.ways)
-    text += fmt::format(" {} strip{} leave{} {}{:.2f} um,", way.strips, way.strips == 1 ? "" : "s",
-                        way.strips == 1 ? "s" : "", way.given_up ? "more than " : "", 1e3 * way.misfit_mm);
-  text.pop_back();
-  return text + fmt::format("; its ball end would take about {} passes where {} strip passes are taken",
-                            planned.ball_passes, planned.passes.size());
+/// One text for both flanks of a ring, or "1 strip on flank +1, 4 strips on flank -1".
+template <typename TextOf>
+std::string by_flank(const line::LinePlan& planned, int zone, const TextOf& text_of) {
+  std::array<std::string, 2> text;
+  for (const auto& pass : planned.passes)
+    if (pass.zone == zone) text[pass.side > 0 ? 0 : 1] = text_of(pass);
+  return text[0] == text[1] ? text[0] : fmt::format("{} on flank +1, {} on flank -1", text[0], text[1]);
+}
+double minutes_of(const std::vector<line::FlankWays>& ways, double line::FlankWays::*minutes) {
+  return std::accumulate(ways.begin(), ways.end(), 0.0, [&](double sum, const auto& w) { return sum + w.*minutes; });
 }
 
 /// How the axis stands in the passes of one ring.
@@ -83,11 +86,13 @@ proof::DirectionChoice direction_of(const line::LinePlan& planned, int operation
   d.axis = sum.normalized();
   d.lean_rad = std::atan2(std::hypot(d.axis.x(), d.axis.y()), d.axis.z());
   d.explanation = fmt::format(
-      "the side of the mill touches the flank along its height in {} strip{}: the axis leans {:.1f} to {:.1f} deg from "
+      "the side of the mill touches the flank along its height in {}: the axis leans {:.1f} to {:.1f} deg from "
       "the gear axis, {}; the misfit of the straight side is {:.2f} um at most, shank and holder keep {:.3f} mm or "
-      "more{}",
-      planned.strips, planned.strips == 1 ? "" : "s", degrees(d.least_lean_rad), degrees(d.greatest_lean_rad),
-      moving_text(planned.rotaries), 1e3 * misfit, clearance_mm, ways_text(planned));
+      "more",
+      by_flank(planned, zone,
+               [](const auto& pass) { return fmt::format("{} strip{}", pass.strips, pass.strips == 1 ? "" : "s"); }),
+      degrees(d.least_lean_rad), degrees(d.greatest_lean_rad),
+      by_flank(planned, zone, [](const auto& pass) { return moving_text(pass.rotaries); }), 1e3 * misfit, clearance_mm);
   return d;
 }
 
@@ -298,9 +303,39 @@ class MillingPlanner {
     const auto work = [&] { planned.emplace(line::plan_line_milling(part_.part(), profile, asked)); };
     if (o_.stage) o_.stage("line passes", work);
     else work();
+    if (op.best_way) return best_way(n, std::move(*planned));
     if (!*planned) return line_refusal(n, planned->error());
     keep(n, std::move(**planned));
     return {};
+  }
+
+  /// The side where it is no slower than the ball end of its mill, else that; the other one where one is refused.
+  [[nodiscard]] std::optional<ball::PlanRefusal> best_way(int n, Result<line::LinePlan> side) {
+    path::MillingOperation& op = operations_[std::size_t(n)];
+    FlankChoice choice{n, true, {}, {}};
+    auto ways = side ? Result<std::vector<line::FlankWays>>(side->ways)
+                     : line::ways_by_ball(part_.part(), tools_[std::size_t(op.tool)].radius_mm(), op.most_misfit_mm(),
+                                          op.feed_mm_min);
+    if (!ways) return line_refusal(n, ways.error());
+    choice.ways = std::move(*ways);
+    if (side &&
+        minutes_of(choice.ways, &line::FlankWays::minutes) <= minutes_of(choice.ways, &line::FlankWays::ball_minutes)) {
+      keep(n, std::move(*side));
+      return {};
+    }
+    if (!side) choice.refused = side.error().message;
+    const path::MillingOperation asked = std::exchange(op, path::by_ball_end(op));
+    auto refusal = ball(n);
+    if (refusal && side) {
+      op = asked;
+      keep(n, std::move(*side));
+      plan_.choices.back().refused = std::move(refusal->diagnostic.message);
+      return {};
+    }
+    if (refusal)
+      refusal->diagnostic.message = fmt::format("{}; by the side: {}", refusal->diagnostic.message, choice.refused);
+    else plan_.choices.push_back(std::move(choice));
+    return refusal;
   }
 
   /// What a control of fewer axes does not admit is told beside.
@@ -320,6 +355,7 @@ class MillingPlanner {
     for (const auto& pass : planned.passes) summary.chord_mm = std::max(summary.chord_mm, pass.chord_mm);
     for (int zone = 0; zone < part_.zones(); ++zone)
       plan_.directions.push_back(direction_of(planned, n, zone, o_.limits.clearance_mm));
+    plan_.choices.push_back({n, false, planned.ways, {}});
     plan_.paths.push_back(std::move(planned.path));
     plan_.operations.push_back(summary);
     plan_.lines.emplace_back(std::move(planned));

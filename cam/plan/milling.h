@@ -19,11 +19,20 @@ struct Options : ball::PlanOptions {
   int simultaneous_axes = 5;          ///< that the control interpolates in a block: X, Y, Z and the rotaries that turn
 };
 
+/// What the flanks of a line-milled operation take by the side of its mill and by its ball end, and which was taken.
+struct FlankChoice {
+  int operation = 0;
+  bool by_ball = false;               ///< where the job leaves it open
+  std::vector<line::FlankWays> ways;  ///< of all flanks
+  std::string refused;                ///< why the way that was not taken cannot be; empty: it is the slower one
+};
+
 struct MillingPlan {
   std::vector<path::ClPath> paths;                   ///< one an operation
   std::vector<ball::OperationPlan> operations;       ///< the same
   std::vector<std::optional<line::LinePlan>> lines;  ///< of line milling, without its path; nothing for the others
   std::vector<proof::DirectionChoice> directions;
+  std::vector<FlankChoice> choices;         ///< of line milling
   std::vector<EngagementTrack> engagement;  ///< of roughing that has a `chip_load` or a `max_engagement`
 };
 

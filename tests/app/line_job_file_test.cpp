@@ -85,13 +85,17 @@ TEST(LineJobFile, PaperScaleIsRead) {
 
 TEST(LineJobFile, KeysOfTheOperation) {
   const job::Job job =
-      read_line(operation("line_milling", 1, "strips = 3\nrotaries = \"one\"\nleft = 0.003\nclimb = false") +
+      read_line(operation("line_milling", 1,
+                          "strips = 3\nrotaries = \"one\"\nleft = 0.003\nclimb = false\n"
+                          "strategy = \"best\"") +
                 operation("line_milling", 1, "rotaries = \"both\"\nallowance = 0.02") + kFilletAndRoot);
   ASSERT_EQ(job.operations.size(), 3u);
   EXPECT_EQ(job.operations[0].strips, 3);
   EXPECT_EQ(job.operations[0].rotaries, path::MovingRotaries::one);
   EXPECT_EQ(job.operations[0].most_misfit_mm(), 0.003);
   EXPECT_FALSE(job.operations[0].climb);
+  EXPECT_TRUE(job.operations[0].best_way);
+  EXPECT_FALSE(job.operations[1].best_way);
   EXPECT_EQ(job.operations[1].rotaries, path::MovingRotaries::both);
   EXPECT_EQ(job.operations[1].most_misfit_mm(), path::MillingOperation::kDefaultLeft);
 }

@@ -105,9 +105,10 @@ TEST(LineRefusals, TiltAboveTheLimit) {
 
 TEST(LineRefusals, MisfitThatCannotBeMet) {
   const std::string any = refused(kLineGear + line(1, "allowance = 0.05\nleft = 0.00001"));
-  expect_words(any, {"left = 0.010 um cannot be met: the side of this tool leaves ", " um at best, with ",
-                     "tried: 1 to 4 strips while the tilt stands or the azimuth stands or both rotaries move",
-                     "what helps: left = 0.00", "more strips (at most 24)", "regions = [\"flank\"]"});
+  expect_words(
+      any, {"left = 0.010 um cannot be met: the side of this tool leaves ", " um at best on flank +1 of zone 0, with ",
+            "tried: 1 to 4 strips while the tilt stands or the azimuth stands or both rotaries move",
+            "what helps: left = 0.00", "more strips (at most 24)", "regions = [\"flank\"]"});
   expect_words(refused(kLineGear + line(1, "allowance = 0.05\nleft = 0.00001\nstrips = 2\nrotaries = \"one\"")),
                {"with 2 strips while the ", "tried: 2 strips while the tilt stands or the azimuth stands;",
                 "more strips (at most 24), rotaries = \"both\""});

@@ -71,21 +71,62 @@ TEST(LineRuns, OffsetAndSpurSamplesInOneStrip) {
       EXPECT_EQ(operation.value("strips", 1), 1);
       misfit = operation.value("misfit_um", misfit);
     }
-    // Where `left` chose, the plan says what each way would take; where the job says the strips, nothing was chosen.
-    int chosen = 0, asked = 0;
-    for (const auto& direction : report["tilt"]["directions"]) {
-      const std::string text = direction["explanation"];
-      if (text.find("the side of the mill") == std::string::npos) continue;
-      const bool told = text.find("; the ways: 1 strip leaves ") != std::string::npos &&
-                        text.find("; its ball end would take about ") != std::string::npos;
-      ++(told ? chosen : asked);
-    }
-    EXPECT_EQ(chosen, 2) << name;
-    EXPECT_EQ(asked, 1) << name;
+    // What each way takes, of every flank.
+    int told = 0;
+    for (const auto& operation : report["operations"])
+      for (const auto& way : operation.value("ways", nlohmann::json::array())) {
+        ++told;
+        EXPECT_EQ(way["taken"], "side");
+        ASSERT_EQ(way["tried"].size(), 1u);
+        EXPECT_EQ(way["tried"][0]["strips"], 1);
+        EXPECT_GT(way["ball_passes"].get<int>(), 10);
+        EXPECT_GT(way["ball_minutes"].get<double>(), 5 * way["side_minutes"].get<double>());
+      }
+    EXPECT_EQ(told, 2 * 3) << name;
+    EXPECT_NE(file_text(dir / "out/report.html").find("Side or ball: what each way takes"), std::string::npos);
     const auto& entry = report["ledger"]["line misfit"];
     EXPECT_GT(misfit, 0) << name;
     EXPECT_NEAR(misfit, entry["measured"].get<double>(), 1e-9) << name;
     EXPECT_LE(misfit, entry["predicted"].get<double>()) << name;
+  }
+}
+
+// Where the job leaves it open, flanks are finished by the side of the mill or by its ball end: by the quicker one of
+// those that hold `left`. The report says what both take, and `check` knows which was taken.
+TEST(LineRuns, TheQuickerWayThatHoldsLeftIsTaken) {
+  struct Case {
+    const char* keys;
+    const char* taken;
+    bool refused;  ///< the other one
+  };
+  for (const Case& c : {Case{"left = 0.005", "side", false},
+                        Case{"left = 0.001\nstrips = 1", "ball", true},  // the side leaves 3 um in one strip
+                        Case{"left = 0.2\nstrips = 7", "ball", false}}) {
+    const TestDir dir;
+    const std::string job =
+        kLineGear +
+        operation("line_milling", 1, fmt::format("{}\nstrategy = \"best\"\nchord_tolerance = 0.001", c.keys)) +
+        kFilletAndRoot;
+    const auto run = run_line_job(dir, job);
+    ASSERT_EQ(run.exit_code, 0) << c.keys << "\n" << run.err;
+    const auto report = report_in(dir / "out");
+    EXPECT_TRUE(report["verified"].get<bool>());
+    const auto& operation = report["operations"][0];
+    EXPECT_EQ(operation["type"], std::string(c.taken) == "ball" ? "finishing" : "line_milling") << c.keys;
+    ASSERT_EQ(operation["ways"].size(), 2u);
+    for (const auto& way : operation["ways"]) {
+      EXPECT_EQ(way["taken"], c.taken) << c.keys;
+      EXPECT_EQ(way.contains("refused"), c.refused) << way.dump();
+      if (c.refused) {
+        EXPECT_NE(way["refused"].get<std::string>().find("cannot be met"), std::string::npos) << way.dump();
+        EXPECT_FALSE(way.contains("side_minutes"));
+        continue;
+      }
+      const bool side_is_quicker = way["side_minutes"].get<double>() < way["ball_minutes"].get<double>();
+      EXPECT_EQ(side_is_quicker, std::string(c.taken) == "side") << way.dump();
+    }
+    const auto checked = run_program({"check", dir / "job.toml", dir / "out/program.ngc", "--out", dir / "checked"});
+    EXPECT_EQ(checked.exit_code, 0) << checked.err;
   }
 }
 

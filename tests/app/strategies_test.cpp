@@ -267,7 +267,7 @@ TEST(StudyStrategies, JobsDifferInTheFlanksAlone) {
 
   job::Job thin = job;  // a tenth of the allowance would be finer than anything the line leaves
   thin.operations[1].allowance_mm = 0.01;
-  EXPECT_EQ(studies::with_ball(thin, *flanks, nullptr)->operations[1].scallop_mm, studies::kLeastCusp_mm);
+  EXPECT_EQ(studies::with_ball(thin, *flanks, nullptr)->operations[1].scallop_mm, path::kLeastCusp_mm);
   EXPECT_TRUE(studies::with_ball(thin, *flanks, nullptr)->operations[1].axis_plus.empty());
   job::Job coarse = job;
   coarse.operations[2].left_mm = 0.3;

@@ -70,10 +70,11 @@ Diagnostic with_measurement(Run& run, const proof::ProofLimits& limits, const pr
 
 /// Plans every operation and lets the gouge check pass each path. Nothing: done.
 std::optional<Diagnostic> plan_and_check(Run& run) {
-  const Status planned = run.milling->plan(run.clock, run.progress);
+  const Status planned = plan_job(run.job, *run.milling, run.clock, run.progress);
   const auto paths = run.paths();
   run.report.directions = run.milling->directions();
   run.report.passes = run.milling->passes();
+  run.report.flank_ways = run.milling->flank_ways();
   run.report.engagement = run.milling->engagement();
   for (std::string& text : run.milling->advice()) run.report.warnings.push_back(std::move(text));
   for (const path::ClPath* path : paths) run.report.cl_points += path->records.size();
@@ -265,6 +266,16 @@ process::ValueOrErrors<GearToCut> make_gear(const job::Job& job, const job::Meas
   if (!corrected) return std::vector{corrected.error()};
   gear.correction = std::move(corrected.value());
   return gear;
+}
+
+Status plan_job(job::Job& job, process::GearMilling& milling, app::StageClock& clock, app::Progress& progress) {
+  const Status planned = milling.plan(clock, progress);
+  for (const report::FlankWaysReport& way : milling.flank_ways()) {
+    path::MillingOperation& operation = job.operations[std::size_t(way.operation)];
+    if (operation.best_way && way.by_ball) operation = path::by_ball_end(operation);
+    operation.best_way = false;
+  }
+  return planned;
 }
 
 std::vector<Diagnostic> prepare(Run& run, const RunAsked& asked) {

@@ -34,6 +34,11 @@ struct GearToCut {
 [[nodiscard]] process::ValueOrErrors<GearToCut> make_gear(const job::Job& job, const job::MeasuredInput& measured,
                                                           app::StageClock& clock);
 
+/// Plans every operation; one of the job whose way is left open (`best_way`) becomes what the plan took. Refused: what
+/// the plan refuses.
+[[nodiscard]] Status plan_job(job::Job& job, process::GearMilling& milling, app::StageClock& clock,
+                              app::Progress& progress);
+
 /// What one run has made so far. Stages fill it in order.
 struct Run {
   app::Progress progress;

@@ -55,13 +55,12 @@ plan::Options plan_options(const proof::ProofLimits& limits, const machines::Mac
 
 void add_side_passes(const line::LinePlan& plan, int operation, std::vector<report::PassReport>& out) {
   for (const auto& pass : plan.passes) {
-    report::SidePass side{pass.side, pass.strip, to_string(plan.rotaries), pass.left_mm, pass.contact_top_mm, {}};
+    report::SidePass side{pass.side, pass.strip, to_string(pass.rotaries), pass.left_mm, pass.contact_top_mm, {}};
     for (const auto& s : pass.stations) side.stations.push_back({s.at, s.lean, s.tilt, s.misfit});
     std::string name = fmt::format("flank {:+d}", pass.side);
-    if (plan.strips > 1) name += fmt::format(", strip {}", pass.strip);
-    const int number = (pass.side > 0 ? 0 : plan.strips) + pass.strip;
-    out.push_back(
-        {operation, pass.zone, number, std::move(name), true, pass.contact_mm, pass.records.size(), std::move(side)});
+    if (pass.strips > 1) name += fmt::format(", strip {}", pass.strip);
+    out.push_back({operation, pass.zone, pass.number, std::move(name), true, pass.contact_mm, pass.records.size(),
+                   std::move(side)});
   }
 }
 
@@ -144,6 +143,11 @@ Status Milling::plan(app::StageClock& clock, app::Progress& progress) {
   });
   if (auto* refusal = planned.refused()) return process::located(job_, refusal->key, std::move(refusal->diagnostic));
   plan_ = std::move(planned).value();
+  for (const plan::FlankChoice& choice : plan_.choices) {
+    path::MillingOperation& operation = planned_operations_[std::size_t(choice.operation)];
+    if (choice.by_ball) operation = path::by_ball_end(operation);
+    operation.best_way = false;
+  }
   check_.shortened = shortened_passes(plan_);
   return Ok{};
 }
@@ -158,6 +162,25 @@ std::vector<report::PassReport> Milling::passes() const {
   std::vector<report::PassReport> out;
   for (std::size_t n = 0; n < plan_.lines.size(); ++n)
     if (plan_.lines[n]) add_side_passes(*plan_.lines[n], int(n), out);
+  return out;
+}
+
+std::vector<report::FlankWaysReport> Milling::flank_ways() const {
+  std::vector<report::FlankWaysReport> out;
+  const double teeth = part_.part().teeth();
+  for (const plan::FlankChoice& choice : plan_.choices)
+    for (const line::FlankWays& w : choice.ways) {
+      report::FlankWaysReport& row = out.emplace_back();
+      row.operation = choice.operation;
+      row.zone = w.zone;
+      row.flank = w.side;
+      for (const line::Way& tried : w.strips) row.tried.push_back({tried.strips, tried.misfit_mm, tried.given_up});
+      row.side_minutes = teeth * w.minutes;
+      row.ball_passes = w.ball_passes;
+      row.ball_minutes = teeth * w.ball_minutes;
+      row.by_ball = choice.by_ball;
+      row.refused = choice.refused;
+    }
   return out;
 }
 

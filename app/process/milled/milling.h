@@ -26,6 +26,7 @@ class Milling : public process::GearMilling {
   [[nodiscard]] std::vector<const path::ClPath*> paths() const override;
   [[nodiscard]] std::vector<proof::DirectionChoice> directions() const override { return plan_.directions; }
   [[nodiscard]] std::vector<report::PassReport> passes() const override;
+  [[nodiscard]] std::vector<report::FlankWaysReport> flank_ways() const override;
   [[nodiscard]] std::vector<report::EngagementReport> engagement() const override;
   [[nodiscard]] std::vector<std::string> advice() const override;
   [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override {

@@ -346,7 +346,7 @@ TEST(LinePlans, PathOfTheQuarterGear) {
   for (std::size_t n_pass = 0; n_pass < plan->passes.size(); ++n_pass) {
     ASSERT_LT(k + 1, records.size());
     const auto found = std::find_if(plan->passes.begin(), plan->passes.end(), [&](const line::LinePass& p) {
-      return p.zone == records[k].zone && (p.side > 0 ? 0 : plan->strips) + p.strip == records[k].pass;
+      return p.zone == records[k].zone && p.number == records[k].pass;
     });
     ASSERT_NE(found, plan->passes.end());
     const line::LinePass& pass = *found;
@@ -568,6 +568,37 @@ TEST(LinePassesOnACone, LowStripsReachTheSmallEndAndTurnInShortBlocks) {
           std::abs(std::remainder(azimuth(pass->records[k].axis.a) - azimuth(pass->records[k - 1].axis.a), 2 * kPi)),
           radians(21));
   }
+}
+
+/// Of the wheel the concave flank has a zero direction that an axis can take, the convex one has none: each has its own
+/// number of strips, and the convex one does not make the concave one take more.
+TEST(LinePassesOnACone, EveryFlankHasItsOwnStrips) {
+  const auto part = part_of(spiral_bevel::SpiralBevelGear::make(nasa_gear()).value());
+  line::LineOperation o;
+  o.speed_rpm = 12000;
+  o.feed_mm_min = 500;
+  o.left_mm = 0.005;
+  o.rotaries = {line::Rotaries::both};
+  o.clearance_height_mm = part->blank_top() + 1;
+  const auto plan = line::plan_line_milling(*part, mill(1.2, 4, 20, 6, 40), o);
+  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_EQ(plan->ways.size(), 2u);
+  std::vector<int> strips;
+  for (const line::FlankWays& flank : plan->ways) {
+    strips.push_back(flank.strips.back().strips);
+    EXPECT_LE(flank.strips.back().misfit_mm, 0.005);
+    for (std::size_t k = 0; k + 1 < flank.strips.size(); ++k) EXPECT_GT(flank.strips[k].misfit_mm, 0.005);
+    std::printf("flank %+d: %d strips, %.3f min, ball %d passes, %.3f min\n", flank.side, strips.back(), flank.minutes,
+                flank.ball_passes, flank.ball_minutes);
+    EXPECT_LT(flank.minutes, 0.5 * flank.ball_minutes);
+  }
+  EXPECT_LT(strips[0], strips[1]);
+  ASSERT_EQ(int(plan->passes.size()), strips[0] + strips[1]);
+  // Passes of the zone count on from flank to flank, in the path as in the report.
+  std::set<int> numbers;
+  for (const auto& r : plan->path.records) numbers.insert(r.pass);
+  EXPECT_EQ(int(numbers.size()), strips[0] + strips[1]);
+  for (std::size_t k = 0; k < plan->passes.size(); ++k) EXPECT_EQ(plan->passes[k].number, int(k));
 }
 
 /// The zero direction of the pinion's flanks leans beyond 60 deg towards the large end: all of their strips are cut by
