@@ -112,9 +112,10 @@ class MillingPlanner {
 
   Expected<MillingPlan, ball::PlanRefusal> run(const Progress& progress) {
     if (const auto& refusal = part_.refusal()) return ball::PlanRefusal{"gear." + refusal->key, refusal->diagnostic};
+    for (std::size_t n = 0; n < operations_.size(); ++n)
+      if (auto gone = stock_is_gone(n)) return std::move(*gone);
     for (std::size_t n = 0; n < operations_.size(); ++n) {
       if (progress) progress(to_string(operations_[n].type));
-      if (auto gone = stock_is_gone(n)) return std::move(*gone);
       auto refusal = operations_[n].type == path::OperationType::line_milling ? line(int(n)) : ball(int(n));
       if (refusal) {
         if (!o_.trial) widen_trials(int(n), *refusal);

@@ -373,12 +373,8 @@ gouge_tolerance = 0.005
   std::string apt = file_text(dir / "places/program.apt");
   const std::size_t tooth = apt.find("$$ TOOTH 1"), risen = apt.rfind("RAPID\nGOTO/", tooth);
   ASSERT_NE(risen, std::string::npos);
-  std::size_t rise = risen;
-  for (int n = 0; n < 2; ++n) {  // it stands up there; and the rise ahead of that
-    rise = apt.rfind("RAPID\nGOTO/", rise - 1);
-    ASSERT_NE(rise, std::string::npos);
-  }
-  write_file(dir / "low.apt", apt.erase(rise, tooth - rise));
+  // Upright, but below the top of the part and to its other side.
+  write_file(dir / "low.apt", apt.replace(risen, tooth - risen, "RAPID\nGOTO/-27.,0.,1.,0.,0.,1.\n"));
   const Finished low = run_program({"check", job, dir / "low.apt", "--out", dir / "low"});
   EXPECT_EQ(low.exit_code, 1);
   EXPECT_NE(low.err.find("a rapid passes through the part"), std::string::npos) << low.err;

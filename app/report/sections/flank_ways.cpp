@@ -10,7 +10,7 @@ report::Section flank_ways(const SectionInput& input) {
   section.title = "Side or ball: what each way takes";
   section.id = "flank-ways";
   section.sheet_rows = 0;
-  section.columns = {"op", "zone", "flank", "strips leave um", "side min", "ball passes", "ball min", "taken"};
+  section.columns = {"op", "zone", "flank", "strips: um left", "side min", "ball passes", "ball min", "taken"};
   std::string refused;
   for (const report::FlankWaysReport& w : input.report.flank_ways) {
     std::string tried;
@@ -26,9 +26,8 @@ report::Section flank_ways(const SectionInput& input) {
   }
   section.note =
       "Each number of strips that was tried with what it leaves; the last one is planned. Ball: about as many passes "
-      "of "
-      "the ball end of the same tool leave as much. Minutes: all teeth, at the feed of the contact; links, rapids and "
-      "what the axes of the machine take longer are not in them." +
+      "of the ball end of the same tool leave as much. Minutes: all teeth, at the feed of the contact, without links, "
+      "rapids and what the axes of the machine take longer." +
       refused;
   return section;
 }
