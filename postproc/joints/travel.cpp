@@ -7,7 +7,7 @@
 
 namespace toothpath::joints {
 namespace {
-constexpr std::size_t kListed = 20;
+constexpr std::size_t kListed = 3;
 constexpr double kStill = 1e-9;  // a joint that a shift of the set-up moves by less per mm is not moved
 }  // namespace
 
@@ -74,9 +74,9 @@ std::optional<Diagnostic> check_travel(AxisProgram& program, const machines::Mac
   }
   if (record.violation_count() == 0) return std::nullopt;
   std::string text;
-  for (const auto& v : record.first_violations()) text += (text.empty() ? "" : "\n") + v;
+  for (const auto& v : record.first_violations()) text += (text.empty() ? "" : "; ") + v;
   if (record.violation_count() > record.first_violations().size())
-    text += fmt::format("\nand {} more", record.violation_count() - record.first_violations().size());
+    text += fmt::format("; and {} more", record.violation_count() - record.first_violations().size());
   std::string shifts;
   for (const int m : {2, 0, 1}) {
     if (program.loop && m != 2) continue;  // the gear would leave the axis that turns it
