@@ -59,6 +59,14 @@ struct PartFacts {
 /// How fine the facets of a mesh are: as those of gear.stl, or a few thousand a pitch for pictures.
 enum class FacetSize : std::uint8_t { file, picture };
 
+/// Operations whose way the job leaves open (`best_way`) become what the plan took; none is open then.
+inline void take_ways(std::vector<path::MillingOperation>& operations,
+                      const std::vector<report::FlankWaysReport>& ways) {
+  for (const report::FlankWaysReport& way : ways)
+    if (auto& o = operations[std::size_t(way.operation)]; o.best_way && way.by_ball) o = path::by_ball_end(o);
+  for (path::MillingOperation& o : operations) o.best_way = false;
+}
+
 /// Points of a flank on which the cut surface is measured; 0: as many as the gear type finds right.
 struct FlankGrid {
   int rows = 0, columns = 0;

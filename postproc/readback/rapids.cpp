@@ -12,7 +12,7 @@ namespace toothpath::readback {
 namespace {
 
 constexpr std::size_t kTogether = 4096;  // rapids that are followed at a time
-constexpr double kFarEnd = 0.005;        // mm: turns of feeds are followed so closely at the far end of the tool
+constexpr double kFarEnd = 0.005;  // mm: turns at the far end of the tool, and 50 times as much (MotionTolerances)
 
 /// More than one of Z, XY and the rotaries moves.
 bool mixes_axes(const ExecutedMove& a, const ExecutedMove& b) {

@@ -270,11 +270,7 @@ process::ValueOrErrors<GearToCut> make_gear(const job::Job& job, const job::Meas
 
 Status plan_job(job::Job& job, process::GearMilling& milling, app::StageClock& clock, app::Progress& progress) {
   const Status planned = milling.plan(clock, progress);
-  for (const report::FlankWaysReport& way : milling.flank_ways()) {
-    path::MillingOperation& operation = job.operations[std::size_t(way.operation)];
-    if (operation.best_way && way.by_ball) operation = path::by_ball_end(operation);
-    operation.best_way = false;
-  }
+  process::take_ways(job.operations, milling.flank_ways());
   return planned;
 }
 

@@ -143,11 +143,7 @@ Status Milling::plan(app::StageClock& clock, app::Progress& progress) {
   });
   if (auto* refusal = planned.refused()) return process::located(job_, refusal->key, std::move(refusal->diagnostic));
   plan_ = std::move(planned).value();
-  for (const plan::FlankChoice& choice : plan_.choices) {
-    path::MillingOperation& operation = planned_operations_[std::size_t(choice.operation)];
-    if (choice.by_ball) operation = path::by_ball_end(operation);
-    operation.best_way = false;
-  }
+  process::take_ways(planned_operations_, flank_ways());
   check_.shortened = shortened_passes(plan_);
   return Ok{};
 }

@@ -21,8 +21,9 @@ report::Section flank_ways(const SectionInput& input) {
                             tried.empty() ? "-" : tried, tried.empty() ? "-" : fmt::format("{:.1f}", w.side_minutes),
                             std::to_string(w.ball_passes), fmt::format("{:.1f}", w.ball_minutes),
                             w.by_ball ? "ball" : "side"});
-    if (!w.refused.empty())
-      refused = fmt::format(" Operation {}, by the {}: {}.", w.operation, w.by_ball ? "side" : "ball end", w.refused);
+    const std::string why =
+        fmt::format(" Operation {}, by the {}: {}.", w.operation, w.by_ball ? "side" : "ball end", w.refused);
+    if (!w.refused.empty() && !refused.ends_with(why)) refused += why;  // once for both flanks
   }
   section.note =
       "Each number of strips that was tried with what it leaves; the last one is planned. Ball: about as many passes "
