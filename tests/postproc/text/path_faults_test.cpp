@@ -126,7 +126,7 @@ TEST(PathFaults, Nr87StepsOfANanometreAndOfTenMetres) {
   for (const auto& b : program->operations[0].teeth[0].blocks)
     if (b.kind == joints::BlockKind::feed) { EXPECT_GT(b.minutes, 0); }
   EXPECT_EQ(message_of(path_along({{{100, 0, -1}, kUp}, {{10100, 0, -1}, kUp}})),
-            "operation 0 record 2 (tooth 0): X = 10103.0000 mm exceeds 899.9000\n"
+            "operation 0 record 2 (tooth 0): X = 10103.0000 mm exceeds 899.9000; "
             "operation 0 record 3 (tooth 0): X = 10103.0000 mm exceeds 899.9000 (no shift of the set-up alone fits)");
   EXPECT_EQ(message_of(path_along({{{100, 0, -1}, kUp}, {{100001, 0, -1}, kUp}})),
             "operation 0 record 2: position is not a number below 1e5 mm");
