@@ -73,8 +73,9 @@ void refuse_ends(toml::TableReader& axis) {
                   axis.name(end), end);
 }
 
+/// Below 1 in a minute no control's text has a word for F.
 double read_speed(toml::TableReader& axis, const char* unit) {
-  return axis.number("max_speed", toml::Range::positive(kLargestSpeed, unit)).value_or(0.0);
+  return axis.number("max_speed", {1, kLargestSpeed, unit}).value_or(0.0);
 }
 
 /// `max_acceleration`, per second squared in the file, per minute squared here; 0 where it is left out.

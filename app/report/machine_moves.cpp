@@ -72,9 +72,12 @@ std::vector<std::string> help_for(const bodies::MovesFound& found) {
     else if (m.neighbours)
       add(fmt::format("touches in the machine file, where \"{}\" and \"{}\" bear on one another", m.first, m.second));
     if (std::isfinite(higher)) continue;
-    add(either(bodies::Kind::work) ? "another setup.origin"
-                                   : fmt::format("setup.origin with the gear farther from \"{}\"",
-                                                 m.first_kind == bodies::Kind::tool ? m.second : m.first));
+    if (m.machine_place)
+      add("axes.Z.max or the bodies in the machine file: the way is to or from the machine's own height");
+    else
+      add(either(bodies::Kind::work) ? "another setup.origin"
+                                     : fmt::format("setup.origin with the gear farther from \"{}\"",
+                                                   m.first_kind == bodies::Kind::tool ? m.second : m.first));
   }
   return out;
 }

@@ -73,6 +73,7 @@ void MovesJudge::add(const readback::ExecutedMove& move) {
   if (move.tool != tool_) flush();
   tool_ = move.tool;
   ++moves_;
+  if (move.machine && move.known) machine_z_ = move.joints[2];
   if (!last_ || !move.known) {
     unjudged_ += move.known ? 0 : 1;
     before_.reset();
@@ -220,6 +221,7 @@ Meeting MovesJudge::meeting(std::size_t pair, const Span& span, const Five& at, 
   m.tooth = span.tooth;
   m.tool = tool_;
   m.rapid = span.rapid;
+  m.machine_place = span.machine || span.from[2] == machine_z_;
   m.joints = joints_of(at);
   return m;
 }

@@ -35,6 +35,7 @@ struct Meeting {
   double measured_mm = 0;  ///< found there
   int line = 0, operation = -1, tooth = -1, tool = 0;
   bool rapid = false;
+  bool machine_place = false;      ///< on the way to or from a height of the machine's own, which no set-up moves
   machines::Joints joints;         ///< there
   double depth_mm = 0;             ///< of a collision: how far the second must be moved to be free ..
   Vec3 direction = Vec3::UnitZ();  ///< .. in this direction, machine coordinates
@@ -133,6 +134,7 @@ class MovesJudge {
   std::map<int, std::vector<std::vector<Span>>> kept_;  ///< teeth of an operation
   std::size_t kept_spans_ = 0;
   std::optional<readback::ExecutedMove> last_, before_;
+  std::optional<double> machine_z_;  ///< joint at the last place that does not move with the work
   int tool_ = 0;
   std::size_t moves_ = 0, unjudged_ = 0;
 };

@@ -521,7 +521,11 @@ class Writer {
   void feed_number(double f, int digits, std::int32_t record, std::size_t begin) {
     out_.text() += out_.size() == begin ? "F" : " F";
     const std::int64_t scaled = f < 9e5 * 1e4 ? numbers::to_fixed_down(f, digits) : 0;
-    if (scaled <= 0 && !error_) error_ = fail("record {}: F {} cannot be printed with {} decimals", record, f, digits);
+    if (scaled <= 0 && !error_)
+      error_ = fail(
+          "record {}: F {} cannot be printed with {} decimals: the operation's feed, max_speed or max_acceleration of "
+          "an axis is out of proportion",
+          record, f, digits);
     numbers::append_fixed(out_.text(), scaled, digits, dialect_.point_always);
   }
 
