@@ -21,9 +21,9 @@ void TravelRecord::note(const machines::Joints& joints, bool moves_with_part, in
   for (const auto& violation : chain.violations(joints, margin)) {
     rotary_outside_ = rotary_outside_ || violation.rotary;
     ++count_;
-    if (first_.size() < kListed)
-      first_.push_back(
-          fmt::format("operation {} record {} (tooth {}): {}", operation, record, tooth, violation.text()));
+    if (first_.size() == kListed) continue;
+    std::string text = fmt::format("operation {} record {} (tooth {}): {}", operation, record, tooth, violation.text());
+    if (first_.empty() || first_.back() != text) first_.push_back(std::move(text));  // a record may take two blocks
   }
   if (!moves_with_part) return;
   if (poses_ != nullptr) poses_->note(joints);

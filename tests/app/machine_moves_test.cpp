@@ -78,8 +78,8 @@ TEST_F(MachineMoves, APlaceThatFitsIsOffered) {
 // A lintel below the height at which the machine changes tools: no set-up helps.
 TEST_F(MachineMoves, TheMachinesOwnHeightIsNamed) {
   const Finished done =
-      run("\n[[body]]\nname = \"lintel\"\nof = \"bed\"\nshape = \"box\"\nmin = [-400.0, -400.0, 420.0]\nmax = [400.0, "
-          "400.0, 440.0]\n");
+      run("\n[[body]]\nname = \"lintel\"\nof = \"bed\"\nshape = \"box\"\nmin = [-400.0, -400.0, 540.0]\nmax = [400.0, "
+          "400.0, 700.0]\n");
   EXPECT_EQ(done.exit_code, 1);
   EXPECT_NE(done.err.find("the way is to or from the machine's own height"), std::string::npos) << done.err;
   EXPECT_EQ(done.err.find("setup.origin"), std::string::npos) << done.err;

@@ -148,10 +148,11 @@ class Attempts {
                                      run_.job,      run_.machine,
                                      &moves,        [&](const readback::ExecutedMove& move) { states.add(move); },
                                      request_.blank};
-    auto proof = process::prove_program(
-        whole,
-        {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad},
-        run_.milling->check(), run_.clock);
+    auto proof =
+        process::prove_program(whole,
+                               {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm,
+                                program.axis_bound_rad + process::rotary_rounding(program)},
+                               run_.milling->check(), run_.clock);
     if (!proof) {
       Diagnostic error = proof.error();
       error.kind = DiagnosticKind::verification;  // our own program must be readable

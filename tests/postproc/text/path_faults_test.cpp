@@ -146,9 +146,9 @@ TEST(MachineFaults, Nr76PartOutOfReach) {
   m.chain.linear[0] = {-50, 50, 30000};
   const std::string message = message_of(path_along({{{100, 0, -1}, kUp}, {{101, 0, -1}, kUp}}), m);
   const std::string expected =
-      "operation 0 record 0 (tooth 0): X = 103.0000 mm exceeds 49.9000; operation 0 record 0 (tooth 0): X = 103.0000 "
-      "mm "
-      "exceeds 49.9000; operation 0 record 1 (tooth 0): X = 103.0000 mm exceeds 49.9000; and 2 more (set-up origin X "
+      "operation 0 record 0 (tooth 0): X = 103.0000 mm exceeds 49.9000; operation 0 record 1 (tooth 0): X = 103.0000 "
+      "mm exceeds 49.9000; operation 0 record 2 (tooth 0): X = 104.0000 mm exceeds 49.9000; and 2 more (set-up origin "
+      "X "
       "-54.1000 fits)";
   EXPECT_EQ(message.substr(0, expected.size()),
             expected);  // what may follow: whether another place has room for the part
