@@ -173,9 +173,8 @@ Expected<spiral_bevel::SpiralBevelGear, std::vector<Refusal>> spiral_bevel_gear(
     return std::vector{Refusal{
         "spiral_angle",
         fail("spiral_angle = {:g} deg is below {:g} deg, from where on these numbers make a gear by one cut on a "
-             "machine without tilt; another cutter radius than {:g} mm may allow less. At low spiral angles the "
-             "contact lines run along the tooth, and the roll of the cradle, by which flanks are followed, hardly "
-             "moves on them: settings of a generator's sheet are taken with --rexs. What stops this one: {}",
+             "machine without tilt; another cutter radius than {:g} mm may allow less; settings of a generator's sheet "
+             "are taken with --rexs. What stops this one: {}",
              degrees(drawing.spiral_angle_rad), *least, drawing.cutter_radius_mm,
              refusals->front().diagnostic.message)}};
   return made;

@@ -58,7 +58,7 @@ Middle middle_of(const SetUp& made) {
     (void)k.place<double>(tooth_space::flank_of((i == 0 ? 1 : -1) * k.hand), k.middle[i].x(), k.middle[i].y(), p, n);
     const double about = azimuth(p);
     out.pressure_rad[i] = std::asin(n.dot(chart.up_at(about)));
-    out.spiral_rad[i] = std::atan(std::abs(n.dot(chart.along_at(about)) / (p.x() * n.y() - p.y() * n.x())) * radius(p));
+    out.spiral_rad[i] = std::atan(k.hand * n.dot(chart.along_at(about)) / (p.x() * n.y() - p.y() * n.x()) * radius(p));
   }
   return out;
 }
@@ -119,7 +119,9 @@ Expected<SpiralBevelParameters, Refusal> basic_settings(const Drawing& d, double
     c.cradle_angle_rad = std::atan2(along, across);
     for (std::size_t i = 0; i < 2; ++i)
       c.blades[i] = {r_c + (i == 0 ? 0.5 : -0.5) * width, pressure[i], edge_radius_mm};
-    const auto made = set_up(p);
+    auto made = set_up(p);
+    for (const ByCircle& way : ways_to_follow(p))
+      if (made.refused()) made = set_up(p, way);
     if (const Refusal* refusal = made.refused()) return *refusal;
     const Middle is = middle_of(made.value());
     const double turn = beta - 0.5 * (is.spiral_rad[0] + is.spiral_rad[1]),

@@ -16,7 +16,7 @@ struct Drawing {
   int hand = 1;  ///< 1: right
   double shaft_angle_rad = 1.5707963267948966;
   double outer_transverse_module_mm = 0;
-  double spiral_angle_rad = 0;    ///< in the middle of the face, > 0
+  double spiral_angle_rad = 0;    ///< in the middle of the face, >= 0
   double pressure_angle_rad = 0;  ///< normal
   double face_width_mm = 0;       ///< along the pitch cone
   double cutter_radius_mm = 0;

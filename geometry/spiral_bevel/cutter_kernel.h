@@ -7,7 +7,8 @@
 //
 // Flank: u is the way along the blade from the sharp tip, mm. Fillet: u is the angle of its normal to the tip plane
 // from the blade (its pressure angle) to the root (a quarter turn). Root: the share of its width from the plus to the
-// minus edge. v is about s: the roll, or without one the place on the circle, grows with it evenly.
+// minus edge. v is about s: the roll grows with it evenly, or the place on the circle does: without a roll, and where
+// the roll turns back along the face, because contact lines run along the circles there (small spiral angles).
 //
 // Everything is computed for a left-hand gear; a right-hand one is its mirror image.
 #pragma once
@@ -39,11 +40,12 @@ struct CutFlank {
   std::size_t rolls = 1;          ///< how many there are
   Mat3 tilt = Mat3::Identity();   ///< of the cutter, cradle frame
   double branch = 1;              ///< which of two places on the circle
-  double at_mean = 0, per_s = 1;  ///< roll (Formate: place on the circle) at v_mean, and its growth by v
+  bool by_circle = false;         ///< of a generated flank: the place on the circle grows with v, not the roll
+  double at_mean = 0, per_s = 1;  ///< of what grows with v: its value at v_mean, and its growth by v
   double v_mean = 0;
   double turn = 0;  ///< of the finished flank, so that space 0 has its place
 
-  /// Roll or place on the circle.
+  /// Roll or place on the circle, whichever grows with v.
   template <typename S_>
   [[nodiscard]] S_ parameter(const S_& v) const {
     return S_(at_mean) + S_(per_s) * (v - S_(v_mean));
@@ -101,11 +103,37 @@ struct CutFlank {
             V(lean_x, lean_y, S_(tilt(2, 2)))};
   }
 
+  /// Is the roll at which a place of the cutter touches found in closed form: an upright cutter, an even roll?
+  [[nodiscard]] bool has_roll_of_place() const { return generated && !tilted && rolls == 1; }
+  /// Cosine and sine of the angle with A cos + B sin + D = 0, of two the one of `branch`; nothing: there is none.
+  template <typename S_>
+  [[nodiscard]] std::optional<std::array<S_, 2>> angle_of(const S_& A, const S_& B, const S_& D) const {
+    using std::sqrt;
+    const S_ size = A * A + B * B, rest = size - D * D;
+    if (rest < S_(0.0) || size <= S_(0.0)) return {};
+    const S_ root = S_(branch) * sqrt(rest);
+    return std::array<S_, 2>{-(D * A + root * B) / size, (root * A - D * B) / size};
+  }
+  /// Roll at which a point of the profile touches the gear at a place of its circle; nothing: at none. Only where
+  /// `has_roll_of_place`: the equation of meshing is linear in cosine and sine of the cradle's angle, too.
+  template <typename S_>
+  [[nodiscard]] std::optional<S_> roll_of_place(const ProfilePoint<S_>& point, const std::array<S_, 2>& place) const {
+    using std::atan2, std::cos, std::sin;
+    const S_ ratio(roll[0]), W_x = ratio * S_(cos_g), W_z = S_(1.0) - ratio * S_(sin_g);
+    const auto& [c, s] = place;
+    const S_ A = S_(S) * W_z * point.slope * s, B = S_(-S) * (W_z * point.slope * c + W_x),
+             D = ratio * (point.slope * (S_(moment.x()) * c + S_(moment.y()) * s) - S_(moment.z())) -
+                 W_x * point.foot * s;
+    const auto cradle = angle_of(A, B, D);
+    if (!cradle) return {};
+    const S_ c_q = cos(S_(q)), s_q = sin(S_(q));  // from q on: no box of interest holds half a turn
+    return atan2((*cradle)[1] * c_q - (*cradle)[0] * s_q, (*cradle)[0] * c_q + (*cradle)[1] * s_q);
+  }
+
   /// Cosine and sine of the place on its circle at which a point of the profile touches the gear; nothing: nowhere.
   template <typename S_>
   [[nodiscard]] std::optional<std::array<S_, 2>> touching(const ProfilePoint<S_>& point, const Cradled<S_>& at,
                                                           const S_& ratio) const {
-    using std::sqrt;
     using V = Vec3T<S_>;
     // Velocity of the cutter against the gear: W x P + V, of its tip circle's centre: G.
     const S_ W_x = ratio * S_(cos_g), W_z = S_(1.0) - ratio * S_(sin_g);
@@ -123,10 +151,7 @@ struct CutFlank {
       B = point.slope * G[1] - point.foot * W_x;
       D = -G[2];
     }
-    const S_ size = A * A + B * B, rest = size - D * D;
-    if (rest < S_(0.0) || size <= S_(0.0)) return {};
-    const S_ root = S_(branch) * sqrt(rest);
-    return std::array<S_, 2>{-(D * A + root * B) / size, (root * A - D * B) / size};
+    return angle_of(A, B, D);
   }
 
   /// Place and normal out of the gear. False: the profile touches nowhere at this roll.
@@ -135,16 +160,20 @@ struct CutFlank {
     using std::cos, std::sin;
     using V = Vec3T<S_>;
     const ProfilePoint<S_> point = profile(fillet, u);
-    const S_ t = parameter(v);
+    S_ t = parameter(v);
+    std::array<S_, 2> on_circle{S_(0.0), S_(0.0)};
+    if (!generated || by_circle) on_circle = {cos(t), sin(t)};
+    if (by_circle) {
+      const auto there = roll_of_place(point, on_circle);
+      if (!there) return false;
+      t = *there;
+    }
     const Turned<S_> turned_by = generated ? work(t) : Turned<S_>{S_(0.0), S_(0.0)};
     const Cradled<S_> cutter = cradled(generated ? S_(S_(q) + t) : S_(q));
-    std::array<S_, 2> on_circle;
-    if (generated) {
+    if (generated && !by_circle) {
       const auto touches = touching(point, cutter, turned_by.ratio);
       if (!touches) return false;
       on_circle = *touches;
-    } else {
-      on_circle = {cos(t), sin(t)};
     }
     const V outwards = cutter.e_1 * on_circle[0] + cutter.e_2 * on_circle[1];
     const V at = cutter.Q + outwards * point.rho + cutter.axis * point.zeta,

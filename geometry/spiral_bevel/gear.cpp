@@ -264,7 +264,8 @@ class Inspection : public Refusals {
       if (!sound(tooth_space::flank_of(side), u)) return;
     }
     for (const double v : {k.v_at(tooth_space::flank_of(side), tip->u, s), s})
-      if (f.generated && !(f.work(f.parameter(v)).ratio > 0)) return add(stands_still(gear_, i, f, f.parameter(v), -s));
+      if (f.generated && !f.by_circle && !(f.work(f.parameter(v)).ratio > 0))
+        return add(stands_still(gear_, i, f, f.parameter(v), -s));
   }
 
   void no_root(const CutterSpace& space, std::size_t i, double s) {
@@ -428,6 +429,17 @@ struct Inspected {
   tooth_space::BevelBody body;
 };
 
+/// Sets the flanks up as they are followed one way, and looks at them over the whole face.
+std::vector<Refusal> surfaces(const SpiralBevelParameters& gear, const ByCircle& by_circle, Inspected& out) {
+  auto made = set_up(gear, by_circle);
+  if (auto* refusal = made.refused()) return {std::move(*refusal)};
+  out.space_width_mm = made->space_width_mm;
+  out.space = std::make_shared<const CutterSpace>(made->kernel);
+  Inspection inspection(gear);
+  inspection.surfaces(*out.space);
+  return std::move(inspection.refusals);
+}
+
 Inspected inspected(const SpiralBevelParameters& gear) {
   Inspected out;
   Inspection inspection(gear);
@@ -436,15 +448,13 @@ Inspected inspected(const SpiralBevelParameters& gear) {
   out.refusals = inspection.refusals;
   if (!out.refusals.empty()) return out;
   out.of_surfaces = true;
-  auto made = set_up(gear);
-  if (auto* refusal = made.refused()) {
-    out.refusals = {std::move(*refusal)};
-    return out;
+  // Where the roll turns back along the face the circles of the blades may go on. What is told is of the rolls.
+  const std::vector<ByCircle> ways = ways_to_follow(gear);
+  for (const ByCircle& way : ways) {
+    auto refusals = surfaces(gear, way, out);
+    if (refusals.empty() || way == ways.front()) out.refusals = std::move(refusals);
+    if (out.refusals.empty()) break;
   }
-  out.space_width_mm = made->space_width_mm;
-  out.space = std::make_shared<const CutterSpace>(made->kernel);
-  inspection.surfaces(*out.space);
-  out.refusals = std::move(inspection.refusals);
   if (!out.refusals.empty()) return out;
   out.body = body_of(gear, *out.space);
   if (auto bad = out.body.refusal(out.space->outline())) out.refusals = {std::move(*bad)};

@@ -62,22 +62,25 @@ CutFlank settings_of(const SpiralBevelParameters& gear, std::size_t flank) {
   return f;
 }
 
-/// The edge between fillet and root; s and where it stands about the axis before the work has turned. Nothing: there is
-/// no such place, or it lies behind the axis.
+/// The edge between fillet and root, by what grows with v: s, and how far that is from the middle of the roll (Formate:
+/// where it stands about the axis). Nothing: there is no such place, or it lies behind the axis.
 std::optional<Vec2> edge_at(const CutFlank& f, const Chart& chart, double t) {
   CutFlank plain = f;
   plain.at_mean = t;
   Vec3 p, n;
   if (!plain.place<double>(true, kPi / 2, 0.0, p, n)) return {};
-  if (f.generated) p = Turn(plain.work(t).angle).back(p);
-  if (!(p.x() > 0)) return {};
-  return Vec2(chart.along(p), azimuth(p));
+  if (!f.generated) return p.x() > 0 ? std::optional(Vec2(chart.along(p), azimuth(p))) : std::nullopt;
+  const double roll =
+      f.by_circle ? *plain.roll_of_place<double>(plain.profile<double>(true, kPi / 2), {std::cos(t), std::sin(t)}) : t;
+  if (!(Turn(plain.work(roll).angle).back(p).x() > 0)) return {};
+  return Vec2(chart.along(p), roll);
 }
 
 /// Finds where the edge passes the middle of the face: nearest to roll 0, or to the root line without a roll.
 bool find_middle(CutFlank& f, const Chart& chart, double s_mean) {
   double best = INFINITY;
-  const double from = f.generated ? -kWidestRoll : 0, to = f.generated ? kWidestRoll : kTwoPi;
+  const bool circle = !f.generated || f.by_circle;
+  const double from = circle ? 0 : -kWidestRoll, to = circle ? kTwoPi : kWidestRoll;
   CutFlank tried = f;
   for (const double branch : {1.0, -1.0}) {
     if (!f.generated && branch < 0) continue;
@@ -95,7 +98,7 @@ bool find_middle(CutFlank& f, const Chart& chart, double s_mean) {
           ((middle->x() < s_mean) == rises ? low : high) = t;
         }
         const auto at = edge_at(tried, chart, t);
-        const double away = !at ? INFINITY : f.generated ? std::abs(t) : std::abs(at->y());
+        const double away = at ? std::abs(at->y()) : INFINITY;
         if (away < best && std::abs(at->x() - s_mean) < 1e-6) {
           best = away;
           f.branch = branch;
@@ -126,6 +129,12 @@ std::optional<T> followed(const T& from, double s_from, double s_to, const T& by
   return half ? followed<T>(*half, middle, s_to, by_s, solve, halvings - 1) : std::nullopt;
 }
 
+/// Up or down a flank at s, from one height to another near it.
+std::optional<Vec2> climbed(const CutterKernel& k, Piece piece, double s, double h_from, double h_to, const Vec2& at) {
+  const auto solve = [&](const Vec2& from, double h) { return k.solve(piece, s, h, from); };
+  return followed<Vec2>(at, h_from, h_to, Vec2(0, 0), solve);
+}
+
 /// Along the face from its middle; not a number from where the flank ends.
 void lay_rails(CutterKernel& k, std::size_t flank) {
   constexpr std::size_t kMiddle = CutterKernel::kRails / 2;
@@ -136,7 +145,8 @@ void lay_rails(CutterKernel& k, std::size_t flank) {
                h_mean = k.tip<double>(s_mean);
   const Vec2 none(NAN, NAN);
   Vec2 tip = k.middle[flank];
-  for (int n = 1; n <= kSteps; ++n) tip = k.solve(piece, s_mean, h_mean * n / kSteps, tip).value_or(none);
+  for (int n = 1; n <= kSteps; ++n)
+    tip = climbed(k, piece, s_mean, h_mean * (n - 1) / kSteps, h_mean * n / kSteps, tip).value_or(none);
   // From places near the fillet, half way and at the tip; in halves of the way where v turns quickly.
   const auto lay = [&](std::size_t n, double s_near, const std::array<double, 3>& near, const Vec2& edge) {
     const double s = -k.R_e + step * double(n), u_F = k.flanks[flank].u_F;
@@ -178,7 +188,7 @@ std::optional<Refusal> meet_pitch_cone(const SpiralBevelParameters& gear, Cutter
   at = {k.flanks[flank].u_F, -R_m};
   constexpr int kSteps = 8;
   for (int step = 1; step <= kSteps; ++step) {
-    const auto next = k.solve(piece, -R_m, h_F * (kSteps - step) / kSteps, at);
+    const auto next = climbed(k, piece, -R_m, h_F * (kSteps - step + 1) / kSteps, h_F * (kSteps - step) / kSteps, at);
     if (!next)
       return Refusal{cut_key(gear, flank, "blade_pressure_angle"),
                      fail("blade_pressure_angle = {:.4f} deg: the cutter undercuts the {} flank, which does not reach "
@@ -193,11 +203,28 @@ std::optional<Refusal> meet_pitch_cone(const SpiralBevelParameters& gear, Cutter
 std::optional<Refusal> turns_back(const SpiralBevelParameters& gear, const CutterKernel& k, std::size_t flank) {
   const CutFlank& f = k.flanks[flank];
   for (const double s : {-k.R_e, -k.R_i})
-    if (const double roll = f.parameter(s); f.generated && !(f.work(roll).ratio > 0))
+    if (const double roll = f.parameter(s); f.generated && !f.by_circle && !(f.work(roll).ratio > 0))
       return stands_still(gear, flank, f, roll, -s);
   return {};
 }
 
+/// Both flanks along the face, by what grows with v.
+std::optional<Refusal> lay_flanks(const SpiralBevelParameters& gear, CutterKernel& k) {
+  const double R_m = gear.mean_cone_distance();
+  for (std::size_t i = 0; i < 2; ++i)
+    if (!find_middle(k.flanks[i], chart_of(gear), -R_m))
+      return Refusal{cut_key(gear, i, "radial_distance"),
+                     fail("radial_distance = {:.4f} mm: the {} blade does not pass the middle of the face, cone "
+                          "distance {:.4f} mm, at any roll",
+                          k.flanks[i].S, i == 0 ? "outside" : "inside", R_m)};
+  for (std::size_t i = 0; i < 2; ++i)
+    if (auto refusal = turns_back(gear, k, i)) return refusal;
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (auto refusal = meet_pitch_cone(gear, k, i)) return refusal;
+    lay_rails(k, i);
+  }
+  return {};
+}
 }  // namespace
 
 std::size_t cut_of(const SpiralBevelParameters& gear, std::size_t flank) {
@@ -233,7 +260,18 @@ double asked_space_width(const SpiralBevelParameters& gear) {
          0.5 * gear.backlash_mm.value_or(0) * R_m / gear.outer_cone_distance_mm;
 }
 
-Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear) {
+std::vector<ByCircle> ways_to_follow(const SpiralBevelParameters& gear) {
+  const auto may = [&](std::size_t flank) {
+    const Cut& cut = gear.cuts[cut_of(gear, flank)];
+    return cut.generated && cut.tilt_rad == 0 && cut.modified.empty();
+  };
+  std::vector<ByCircle> ways;
+  for (const ByCircle& way : {ByCircle{false, false}, {false, true}, {true, false}, {true, true}})
+    if ((!way[0] || may(0)) && (!way[1] || may(1))) ways.push_back(way);
+  return ways;
+}
+
+Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear, const ByCircle& by_circle) {
   SetUp out;
   CutterKernel& k = out.kernel;
   k.teeth = gear.teeth;
@@ -244,19 +282,13 @@ Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear) {
   k.R_i = k.R_e - gear.face_width_mm;
   k.tip_0 = cone_height(gear, gear.tip_angle_rad, -gear.tip_apex_mm, 0);
   k.tip_slope = -std::tan(gear.tip_angle_rad - gear.pitch_angle_rad);
-  const Chart chart = chart_of(gear);
-  const double R_m = gear.mean_cone_distance(), r_m = R_m * k.sin_d;
+  const double r_m = gear.mean_cone_distance() * k.sin_d;
   const Cut &concave = gear.cuts[cut_of(gear, 0)], &convex = gear.cuts[cut_of(gear, 1)];
   for (std::size_t i = 0; i < 2; ++i) {
     k.flanks[i] = settings_of(gear, i);
-    if (!find_middle(k.flanks[i], chart, -R_m))
-      return Refusal{cut_key(gear, i, "radial_distance"),
-                     fail("radial_distance = {:.4f} mm: the {} blade does not pass the middle of the face, cone "
-                          "distance {:.4f} mm, at any roll",
-                          k.flanks[i].S, i == 0 ? "outside" : "inside", R_m)};
+    k.flanks[i].by_circle = by_circle[i];
   }
-  for (std::size_t i = 0; i < 2; ++i)
-    if (auto refusal = turns_back(gear, k, i)) return std::move(*refusal);
+  if (auto refusal = lay_flanks(gear, k)) return std::move(*refusal);
   const bool one_cone = std::abs(concave.root_angle_rad - convex.root_angle_rad) < kSameRoot &&
                         std::abs(root_apex_z(concave) - root_apex_z(convex)) < kSameRoot;
   const bool tilted = concave.tilt_rad != 0 || convex.tilt_rad != 0;
@@ -265,11 +297,9 @@ Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear) {
                                                       : RootForm::woven;
   std::array<double, 2> azimuths{};
   for (std::size_t i = 0; i < 2; ++i) {
-    if (auto refusal = meet_pitch_cone(gear, k, i)) return std::move(*refusal);
     Vec3 p, n;
     (void)k.place<double>(piece_of(k, i), k.middle[i].x(), k.middle[i].y(), p, n);
     azimuths[i] = -gear.hand * azimuth(p);  // of the left hand
-    lay_rails(k, i);
   }
   if (&concave == &convex) {
     out.space_width_mm = std::remainder(azimuths[0] - azimuths[1], kTwoPi) * r_m;

@@ -2,7 +2,9 @@
 // flanks are turned into space 0.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <vector>
 
 #include "geometry/base/refusal.h"
 #include "geometry/base/result.h"
@@ -30,7 +32,14 @@ struct SetUp {
   CutterKernel kernel;
   double space_width_mm = 0;  ///< arc on the pitch circle at the mean cone distance
 };
+/// Is a flank followed along the face by the place on the circles of its blade, and not by the roll? At small spiral
+/// angles its contact lines run along these circles, and the roll turns back; elsewhere the place on them may turn
+/// back. 0: concave.
+using ByCircle = std::array<bool, 2>;
+/// The ways to follow the flanks of a gear, by rolls first; circles only with an even roll and no tilt.
+[[nodiscard]] std::vector<ByCircle> ways_to_follow(const SpiralBevelParameters& gear);
 /// Refused: a cutter that does not pass the middle of the root, a flank that does not reach the pitch cone there.
-[[nodiscard]] Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear);
+/// @param by_circle  one of `ways_to_follow`
+[[nodiscard]] Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear, const ByCircle& by_circle = {});
 
 }  // namespace toothpath::spiral_bevel

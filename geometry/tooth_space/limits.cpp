@@ -80,10 +80,33 @@ std::optional<PatchPoint> place_at(const ToothSpace& space, Piece piece, double 
   return v ? space.at(piece, u, *v) : std::nullopt;
 }
 
+namespace {
+/// By how much the azimuth of a flank grows from its fillet to the tip surface at s, counted on through whole turns.
+std::optional<double> turn_of_flank(const ToothSpace& space, int side, double s, double tip_u) {
+  constexpr int kRises = 64;
+  const Borders b = space.borders(flank_of(side));
+  const double fillet = std::isfinite(b.from) ? b.from : b.to;
+  double turn = 0, last = 0;
+  for (int n = 0; n <= kRises; ++n) {
+    const auto q = place_at(space, flank_of(side), fillet + (tip_u - fillet) * n / kRises, s);
+    if (!q) return {};
+    const double now = azimuth(q->p);
+    if (n > 0) turn += wrapped(now - last);
+    last = now;
+  }
+  return turn;
+}
+}  // namespace
+
 double top_land_mm(const ToothSpace& space, double s) {
   const auto plus = space.tip_edge(1, s), minus = space.tip_edge(-1, s);
   if (!plus || !minus) return 0;
-  return space.outline().chart.r(s, space.tip(s)) * wrapped(plus->azimuth - minus->azimuth);
+  const double land = wrapped(plus->azimuth - minus->azimuth);
+  // Flanks that go on far beyond where they meet come round the axis again; at their fillets they are a tooth apart.
+  const auto up = turn_of_flank(space, 1, s, plus->u), down = turn_of_flank(space, -1, s, minus->u);
+  if (!up || !down) return 0;
+  const double turn = *up - *down, rounds = std::round((wrapped(land - turn) + turn - land) / kTwoPi);
+  return space.outline().chart.r(s, space.tip(s)) * (land + kTwoPi * rounds);
 }
 
 std::optional<PatchPoint> middle_of_flank(const ToothSpace& space, int side, double s) {

@@ -35,6 +35,13 @@ SpiralBevelParameters left_gear() {
   return g;
 }
 
+/// So steep that the roll does not reach over the whole of one flank: that is followed by the circles of its blade.
+SpiralBevelParameters steep_gear() {
+  auto g = nasa_gear();
+  for (auto& blade : g.cuts[0].blades) blade.pressure_angle_rad = radians(10);
+  return g;
+}
+
 class SpiralBevelGears : public testing::TestWithParam<Sample> {
  protected:
   SpiralBevelParameters parameters_ = GetParam().gear();
@@ -120,7 +127,7 @@ TEST_P(SpiralBevelGears, AreWhatTheirCuttersLeave) {
     for (int n = 0; n < 12; ++n) {
       const std::size_t i = kernel_.index(side_of(piece));
       const auto q = somewhere(piece, random);
-      const double middle = kernel_.flanks[i].at_mean;
+      const double middle = kernel_.flanks[i].by_circle ? 0 : kernel_.flanks[i].at_mean;
       for (const double away : {0.0, 0.05, -0.05})
         EXPECT_NEAR(left_by(parameters_, kernel_, i, q.p - away * q.n, middle), away, 1e-9)
             << to_string(piece) << " at " << q.p.transpose();
@@ -230,10 +237,40 @@ TEST_P(SpiralBevelGears, TipEdgesAreBoundedClosely) {
     }
 }
 
+/// Followed by the place on the circles of the blades a flank is the same as followed by its roll.
+TEST_P(SpiralBevelGears, PlacesOfTheCircleAndRollsMakeOneFlank) {
+  Random random(13);
+  for (const int side : {1, -1}) {
+    const spiral_bevel::CutFlank& by_roll = kernel_.flank(side);
+    if (!by_roll.has_roll_of_place() || by_roll.by_circle) continue;
+    for (const bool fillet : {false, true})
+      for (int n = 0; n < 20; ++n) {
+        const double u = fillet ? random(by_roll.alpha, kPi / 2) : by_roll.u_F + random(0, 5), v = random(-93, -69),
+                     t = by_roll.parameter(v);
+        Vec3 p, normal, q, other;
+        if (!by_roll.place<double>(fillet, u, v, p, normal)) continue;
+        const auto on = by_roll.touching<double>(by_roll.profile<double>(fillet, u), by_roll.cradled(by_roll.q + t),
+                                                 by_roll.work(t).ratio);
+        ASSERT_TRUE(on);
+        spiral_bevel::CutFlank by_circle = by_roll;
+        by_circle.by_circle = true;
+        by_circle.at_mean = std::atan2((*on)[1], (*on)[0]);
+        double off = INFINITY;  // two rolls touch there; one of them is that of the flank
+        for (const double branch : {1.0, -1.0}) {
+          by_circle.branch = branch;
+          ASSERT_TRUE(by_circle.place<double>(fillet, u, by_circle.v_mean, q, other));
+          off = std::min(off, (p - q).norm() + 100 * (normal - other).norm());
+        }
+        EXPECT_LT(off, 1e-10) << side << " " << fillet << " " << u << " " << v;
+      }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, SpiralBevelGears,
                          testing::Values(Sample{"pinion", nasa_pinion}, Sample{"gear", nasa_gear},
                                          Sample{"left_gear", left_gear}, Sample{"formate", formate_wheel},
-                                         Sample{"tilted", tilted_gear}),
+                                         Sample{"tilted", tilted_gear}, Sample{"zerol", zerol_gear},
+                                         Sample{"steep", steep_gear}),
                          [](const testing::TestParamInfo<Sample>& s) { return std::string(s.param.name); });
 
 struct PrintedRoll {

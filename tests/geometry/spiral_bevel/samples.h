@@ -2,6 +2,7 @@
 #pragma once
 
 #include "geometry/base/angle.h"
+#include "geometry/spiral_bevel/basic_settings.h"
 #include "geometry/spiral_bevel/gear.h"
 
 namespace toothpath::test {
@@ -63,6 +64,20 @@ inline spiral_bevel::SpiralBevelParameters formate_wheel() {
   auto g = nasa_gear();
   g.cuts[0].generated = false;
   g.cuts[0].ratio_of_roll = 0;
+  return g;
+}
+
+/// A wheel of that size without a spiral: its contact lines run along the circles of the blades.
+inline spiral_bevel::SpiralBevelParameters zerol_gear() {
+  spiral_bevel::Drawing d;
+  d.teeth = 36;
+  d.mate_teeth = 12;
+  d.outer_transverse_module_mm = 4.941;
+  d.pressure_angle_rad = radians(20);
+  d.face_width_mm = 25.4;
+  d.cutter_radius_mm = 76.2;
+  auto g = spiral_bevel::basic_settings(d, 0.7).value();
+  g.bore_diameter_mm = 60;
   return g;
 }
 

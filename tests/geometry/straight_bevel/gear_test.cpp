@@ -241,16 +241,29 @@ TEST(StraightBevel, FlanksThatEndBelowTheFaceConeAreToldByHowMuch) {
   g.pressure_angle_rad = radians(30);
   g.fillet_radius_mm = 0.1;
   g.dedendum_mm = 1;
-  g.addendum_mm = 72;
-  g.tip_angle_rad = g.pitch_angle_rad - radians(20);
+  g.addendum_mm = 120;
   const auto made = StraightBevelGear::make(g);
   ASSERT_TRUE(made.refused());
   const std::string message = made.refused()->front().diagnostic.message, before = "the flanks end ";
   ASSERT_NE(message.find(before), std::string::npos) << message;
-  const double R_i = 0.5 * g.outer_transverse_module_mm * g.teeth / std::sin(g.pitch_angle_rad) - g.face_width_mm,
-               lack = 72 + g.face_width_mm * std::tan(radians(20)) - R_i / std::tan(radians(30));
+  const double R_e = 0.5 * g.outer_transverse_module_mm * g.teeth / std::sin(g.pitch_angle_rad),
+               lack = 120 - R_e / std::tan(radians(30));
   EXPECT_GT(lack, 1);
   EXPECT_NEAR(std::stod(message.substr(message.find(before) + before.size())), lack, 1e-4) << message;
+}
+
+/// Flanks that go on far beyond where they meet come round the axis again: that is no land.
+TEST(StraightBevel, FlanksThatComeRoundAgainArePointed) {
+  auto g = khk_pinion();
+  g.pressure_angle_rad = radians(30);
+  g.fillet_radius_mm = 0.1;
+  g.dedendum_mm = 1;
+  for (g.addendum_mm = 8; g.addendum_mm < 100; g.addendum_mm += 4) {
+    const auto made = StraightBevelGear::make(g);
+    ASSERT_TRUE(made.refused()) << g.addendum_mm;
+    EXPECT_NE(made.refused()->front().diagnostic.message.find("the tooth is pointed"), std::string::npos)
+        << g.addendum_mm << made.refused()->front().diagnostic.message;
+  }
 }
 
 }  // namespace
