@@ -63,6 +63,14 @@ Middle middle_of(const SetUp& made) {
   return out;
 }
 
+/// The first way to follow the flanks that is not refused; what is told is of the first.
+Expected<SetUp, Refusal> set_up_one_way(const SpiralBevelParameters& gear) {
+  auto first = set_up(gear);
+  if (!first.refused()) return first;
+  for (const ByCircle& way : ways_to_follow(gear))
+    if (auto made = set_up(gear, way); !made.refused()) return made;
+  return first;
+}
 }  // namespace
 
 double pitch_angle(const Drawing& d) {
@@ -119,9 +127,7 @@ Expected<SpiralBevelParameters, Refusal> basic_settings(const Drawing& d, double
     c.cradle_angle_rad = std::atan2(along, across);
     for (std::size_t i = 0; i < 2; ++i)
       c.blades[i] = {r_c + (i == 0 ? 0.5 : -0.5) * width, pressure[i], edge_radius_mm};
-    auto made = set_up(p);
-    for (const ByCircle& way : ways_to_follow(p))
-      if (made.refused()) made = set_up(p, way);
+    const auto made = set_up_one_way(p);
     if (const Refusal* refusal = made.refused()) return *refusal;
     const Middle is = middle_of(made.value());
     const double turn = beta - 0.5 * (is.spiral_rad[0] + is.spiral_rad[1]),
