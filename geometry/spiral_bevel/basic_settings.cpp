@@ -65,11 +65,13 @@ Middle middle_of(const SetUp& made) {
 
 /// The first way to follow the flanks that is not refused; what is told is of the first.
 Expected<SetUp, Refusal> set_up_one_way(const SpiralBevelParameters& gear) {
-  auto first = set_up(gear);
-  if (!first.refused()) return first;
-  for (const ByCircle& way : ways_to_follow(gear))
-    if (auto made = set_up(gear, way); !made.refused()) return made;
-  return first;
+  std::optional<Expected<SetUp, Refusal>> first;
+  for (const ByCircle& way : ways_to_follow(gear)) {
+    auto made = set_up(gear, way);
+    if (!made.refused()) return made;
+    if (!first) first = std::move(made);
+  }
+  return std::move(*first);
 }
 }  // namespace
 

@@ -103,8 +103,6 @@ struct CutFlank {
             V(lean_x, lean_y, S_(tilt(2, 2)))};
   }
 
-  /// Is the roll at which a place of the cutter touches found in closed form: an upright cutter, an even roll?
-  [[nodiscard]] bool has_roll_of_place() const { return generated && !tilted && rolls == 1; }
   /// Cosine and sine of the angle with A cos + B sin + D = 0, of two the one of `branch`; nothing: there is none.
   template <typename S_>
   [[nodiscard]] std::optional<std::array<S_, 2>> angle_of(const S_& A, const S_& B, const S_& D) const {
@@ -114,8 +112,8 @@ struct CutFlank {
     const S_ root = S_(branch) * sqrt(rest);
     return std::array<S_, 2>{-(D * A + root * B) / size, (root * A - D * B) / size};
   }
-  /// Roll at which a point of the profile touches the gear at a place of its circle; nothing: at none. Only where
-  /// `has_roll_of_place`: the equation of meshing is linear in cosine and sine of the cradle's angle, too.
+  /// Roll at which a point of the profile touches the gear at a place of its circle; nothing: at none. Only for an
+  /// upright cutter and an even roll: the equation of meshing is linear in cosine and sine of the cradle's angle, too.
   template <typename S_>
   [[nodiscard]] std::optional<S_> roll_of_place(const ProfilePoint<S_>& point, const std::array<S_, 2>& place) const {
     using std::atan2, std::cos, std::sin;

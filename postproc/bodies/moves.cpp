@@ -73,14 +73,16 @@ void MovesJudge::add(const readback::ExecutedMove& move) {
   if (move.tool != tool_) flush();
   tool_ = move.tool;
   ++moves_;
-  if (move.machine && move.known) machine_z_ = move.joints[2];
+  const double before = machine_z_;
+  if (move.machine) machine_z_ = std::max(machine_z_, move.joints[2]);
   if (!last_ || !move.known) {
     unjudged_ += move.known ? 0 : 1;
     before_.reset();
     last_ = move;
     return;
   }
-  const Span span = span_to(move);
+  Span span = span_to(move);
+  span.machine_place = span.from[2] == before || span.to[2] == machine_z_;
   tooth_.push_back(span);
   if (before_ && (move.corner_share > 0 || last_->corner_share > 0)) tooth_.push_back(corner_before(move, span));
   before_ = last_;
@@ -221,7 +223,7 @@ Meeting MovesJudge::meeting(std::size_t pair, const Span& span, const Five& at, 
   m.tooth = span.tooth;
   m.tool = tool_;
   m.rapid = span.rapid;
-  m.machine_place = span.machine || span.from[2] == machine_z_;
+  m.machine_place = span.machine_place;
   m.joints = joints_of(at);
   return m;
 }

@@ -79,7 +79,8 @@ class MovesJudge {
     int line = 0;
     std::int16_t operation = -1, tooth = -1;
     bool rapid = false, box = false, tcp = false;
-    bool machine = false;  // its end does not move with the work
+    bool machine = false;        // its end does not move with the work
+    bool machine_place = false;  // it begins or ends at a height of the machine's own
   };
   /// Joints between a least and a greatest, and how far they may be off.
   struct Range {
@@ -134,7 +135,7 @@ class MovesJudge {
   std::map<int, std::vector<std::vector<Span>>> kept_;  ///< teeth of an operation
   std::size_t kept_spans_ = 0;
   std::optional<readback::ExecutedMove> last_, before_;
-  std::optional<double> machine_z_;  ///< joint at the last place that does not move with the work
+  double machine_z_ = -INFINITY;  ///< joint: the highest place so far that does not move with the work
   int tool_ = 0;
   std::size_t moves_ = 0, unjudged_ = 0;
 };

@@ -242,7 +242,7 @@ TEST_P(SpiralBevelGears, PlacesOfTheCircleAndRollsMakeOneFlank) {
   Random random(13);
   for (const int side : {1, -1}) {
     const spiral_bevel::CutFlank& by_roll = kernel_.flank(side);
-    if (!by_roll.has_roll_of_place() || by_roll.by_circle) continue;
+    if (!by_roll.generated || by_roll.tilted || by_roll.rolls != 1 || by_roll.by_circle) continue;
     for (const bool fillet : {false, true})
       for (int n = 0; n < 20; ++n) {
         const double u = fillet ? random(by_roll.alpha, kPi / 2) : by_roll.u_F + random(0, 5), v = random(-93, -69),
