@@ -81,13 +81,13 @@ INSTANTIATE_TEST_SUITE_P(
         gear("face", "ball", "head_head_ca", {"--teeth", "44", "--module", "2.5"}),
         gear("face", "ball", "nutating_table.toml", {"--teeth", "40", "--module", "1.5", "--helix", "10"}),
         gear("face", "line", "head_table_bc", {"--teeth", "40", "--module", "1.5"}),
-        gear("face", "line", "haas_ac", {"--teeth", "40", "--module", "1.5"}),
+        gear("face", "line", "haas_ac_top", {"--teeth", "40", "--module", "1.5"}),
         gear("face", "shaped", "shaper_siemens", {"--teeth", "53", "--module", "2"}),
         gear("offset", "ball", "t600s", {"--teeth", "60", "--module", "1.5"}),
-        gear("offset", "line", "siemens_ac", {"--teeth", "70", "--module", "2.81"}),
+        gear("offset", "line", "siemens_ac_top", {"--teeth", "70", "--module", "2.81"}),
         gear("offset", "line", "t600s", {"--teeth", "60", "--module", "1.5"}),
         gear("offset", "shaped", "y514", {"--teeth", "88", "--module", "3"}),
-        gear("double_helical", "ball", "heidenhain_ac", {"--teeth", "60", "--module", "1.5"}),
+        gear("double_helical", "ball", "heidenhain_ac_top", {"--teeth", "60", "--module", "1.5"}),
         gear("double_helical", "line", "xyzac_large", {"--teeth", "60", "--module", "1.5"}),
         // Undercut without a shift; the spindle comes in beside the table.
         gear("cylindrical", "ball", "siemens_ac", {"--teeth", "12", "--module", "2.5"}),
@@ -103,8 +103,8 @@ INSTANTIATE_TEST_SUITE_P(
               "--face-width", "5", "--cutter-radius", "31.75"}),
         gear("straight_bevel", "ball", "xyzac_trt", {"--teeth", "20", "--mate-teeth", "40", "--module", "2"}),
         gear("straight_bevel", "line", "head_table_bc", {"--teeth", "30", "--mate-teeth", "20", "--module", "2"}),
-        gear("bevel_herringbone", "finger", "fanuc_ac", {"--teeth", "18", "--mate-teeth", "27", "--module", "2"}),
-        gear("bevel_herringbone", "finger", "m80_ac", {"--teeth", "24", "--mate-teeth", "36", "--module", "3.4"})));
+        gear("bevel_herringbone", "finger", "fanuc_ac_top", {"--teeth", "18", "--mate-teeth", "27", "--module", "2"}),
+        gear("bevel_herringbone", "finger", "m80_ac_top", {"--teeth", "24", "--mate-teeth", "36", "--module", "3.4"})));
 
 /// Both gears of a pair roll together: teeth exchanged, the other hand.
 TEST(New, WritesTheJobOfTheMateToo) {
