@@ -6,6 +6,7 @@ test_packages=(libgtest-dev libbenchmark-dev calculix-ccx clang-format clang-tid
   dpkg-dev file lintian mandoc zsh fish pybind11-dev python3-dev python3-numpy python3-matplotlib python3-jsonschema python3-tomli
   slurm-wlm parallel)
 exchange_packages=(freecad-python3)  # opens the STEP files of tests/app/cad_files_test.cpp; with what it needs 1 GB
+site_packages=(mkdocs mkdocs-material)  # tools/site.sh
 fuzz_packages=(clang-14 clang libclang-rt-14-dev libfuzzer-14-dev)  # tools/fuzz.sh
 
 # need_packages NAME...: installs those that are not there, in one call; upgrades nothing.
