@@ -31,6 +31,26 @@ constexpr double kSettled = 0.002;       // tangent: the relaxation ends when no
 constexpr int kRounds = 9;               // searches for a pass that is not clear between its stations
 constexpr int kRoundsOfStations = 3;     // of them, until the stations are halved
 constexpr double kFarthestGap = 2.0;     // mm: gaps beyond are not measured
+constexpr double kFluteSag = 1e-4;       // mm: how deep an edge between two heights of the flute may stand in it
+
+/// The flute at a height above the ball centre: its radius, and the distance of its axis to the part. mm
+struct FluteHeight {
+  double above = 0, radius = 0, distance = 0;
+  /// Square of the half chord about this height in which nothing of the part can stand; negative: the flute cuts.
+  [[nodiscard]] double spare() const { return distance * distance - radius * radius; }
+};
+
+/// Between two heights at which it cuts nothing. The square of a distance less that of the way is concave along a line,
+/// whatever the part (cam/README.md): where the half chords of both heights meet, nothing stands between them.
+template <class Measured>
+bool flute_is_free_between(const FluteHeight& a, const FluteHeight& b, const Measured& measured) {
+  const double way = b.above - a.above, wider = b.radius - a.radius;
+  if (std::sqrt(a.spare()) + std::sqrt(b.spare()) >= std::sqrt(std::max(0.0, way * way - wider * wider))) return true;
+  if (way * way < 8 * a.radius * kFluteSag) return true;
+  const FluteHeight middle = measured(0.5 * (a.above + b.above));
+  return middle.spare() >= 0 && flute_is_free_between(a, middle, measured) &&
+         flute_is_free_between(middle, b, measured);
+}
 
 class Orienter {
  public:
@@ -534,21 +554,37 @@ bool OrientationCheck::stands_right(const BallPass::Point& point, const Vec3& ax
          normal.normalized().dot(axis) - angle_rad >= o_.least_draft;
 }
 
+double OrientationCheck::flute_radius(double above) const {
+  return tool_.radius_mm() + above * std::sin(tool_.half_angle_rad) + path::kPlannedStock * o_.allowance_mm;
+}
+
 double OrientationCheck::flute_cut(const BallPass::Point& point, const Vec3& axis, double above) const {
-  const double R = tool_.radius_mm() + above * std::sin(tool_.half_angle_rad) + path::kPlannedStock * o_.allowance_mm;
+  const double R = flute_radius(above);
   return R - part_.nearest(point.centre + above * axis, R + 0.01).distance;
 }
 
 bool OrientationCheck::flute_is_free(const BallPass::Point& point, const Vec3& axis, double angle_rad) const {
   const double R = tool_.radius_mm(), top = tool_.flute_length_mm - R;
   const tooth_space::Chart& chart = part_.part().chart();
+  const auto measured = [&](double above) {
+    const double radius = flute_radius(above) + above * angle_rad;
+    return FluteHeight{above, radius, part_.nearest(point.centre + above * axis, std::hypot(radius, 0.5 * R)).distance};
+  };
+  std::vector<FluteHeight> heights;
   for (double h = std::min(0.4 * R, top); h > 0; h = h < top ? std::min(h + R, top) : -1) {
     // Above the part, and rising from there on.
     const Vec3 at = point.centre + h * axis;
     if (chart.up(at) - h * angle_rad - R > part_.part().blank_top() &&
         (chart.sine == 0 || chart.up(at, axis) >= angle_rad))
       break;
-    if (flute_cut(point, axis, h) + h * angle_rad > 0) return false;
+    heights.push_back(measured(h));
+    if (heights.back().spare() < 0) return false;
+  }
+  // The ball touches what it cuts: nothing to spare at its centre.
+  FluteHeight below{0, flute_radius(0), flute_radius(0)};
+  for (const FluteHeight& above : heights) {
+    if (!flute_is_free_between(below, above, measured)) return false;
+    below = above;
   }
   return true;
 }

@@ -109,6 +109,8 @@ class OrientationCheck {
   /// Draft and flute, under all axes within that angle.
   [[nodiscard]] bool stands_right(const BallPass::Point& point, const Vec3& axis, double angle_rad = 0) const;
   [[nodiscard]] bool flute_is_free(const BallPass::Point& point, const Vec3& axis, double angle_rad = 0) const;
+  /// Of the flute, with the allowance that it leaves, so far above the ball centre; of a taper it widens. mm
+  [[nodiscard]] double flute_radius(double above) const;
 
   const analytic::GearDistance& part_;
   const analytic::BodyTree& tree_;

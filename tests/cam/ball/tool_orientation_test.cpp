@@ -143,6 +143,37 @@ TEST(Orientation, ClearDirectionsAgainstSampledSurfaces) {
   EXPECT_GE(blocked, 10);
 }
 
+// An edge between two heights that are asked is found, too: tips at the ends of the teeth are as sharp as any.
+TEST(Orientation, AFluteThatIsFreeCutsNowhere) {
+  const auto& job = short_job();
+  const analytic::BodyTree tree(*job.part);
+  const ball::OrientationOptions options;
+  const ball::OrientationCheck check(*job.part, tree, 0, job.tools[0], options);
+  const double R = job.tools[0].radius_mm(), top = job.tools[0].flute_length_mm - R;
+  const auto& records = job.plan.paths[0].records;
+  test::Random random(6);
+  int free = 0, between = 0;
+  for (int k = 0; k < 12000; ++k) {
+    const auto& record = records[random.index(records.size())];
+    ball::BallPass::Point point;
+    point.centre = point.contact =
+        record.tip + R * record.axis + Vec3(random(-1, 1), random(-1, 1), random(-0.2, 0.8)) * R;
+    const double r = job.part->part().chart().along(point.centre);
+    if (std::min(std::abs(r - job.gear.inner_radius()), std::abs(r - job.gear.outer_radius())) > R) continue;
+    if (job.part->nearest(point.centre, R).distance < R) continue;
+    const Vec3 axis = check.frame().axis(random(-0.6, 0.6), random(-0.6, 0.6));
+    double deepest = 0, at_steps = 0;
+    for (int h = 1; h <= 100; ++h) deepest = std::max(deepest, check.flute_cut(point, axis, top * h / 100));
+    for (double h = 0.4 * R; h < top; h += R) at_steps = std::max(at_steps, check.flute_cut(point, axis, h));
+    between += at_steps == 0 && deepest > 0.001;
+    if (!check.cutting(point, axis)) continue;
+    ++free;
+    EXPECT_LE(deepest, 1.1e-4);
+  }
+  EXPECT_GE(free, 200);
+  EXPECT_GE(between, 3);  // edges that stand between the heights asked first
+}
+
 double cost_of(const std::vector<Vec2>& leans, double ds, const ball::LeanReference& reference) {
   double cost = 0;
   for (std::size_t k = 0; k < leans.size(); ++k) {
