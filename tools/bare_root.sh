@@ -1,7 +1,7 @@
-# A bare Debian 12 in a folder, and commands in it. Sourced by tools/in_bare_root.sh and tests/first_hour; needs root rights and debootstrap.
-# Mirror, ways to it and trusted certificates are those of this machine.
+# A bare Debian in a folder, and commands in it. Sourced by tools/in_bare_root.sh and tests/first_hour; needs root rights and debootstrap.
+# Mirror, ways to it and trusted certificates are those of this machine. bare_release: another release of the same mirror.
 
-bare_release=bookworm  # Debian 12
+bare_release=${bare_release:-bookworm}  # Debian 12
 bare_certificates=etc/ssl/certs/ca-certificates.crt
 
 # bare_root_problem: why there can be none here; nothing where there can.
@@ -9,12 +9,13 @@ bare_root_problem() {
   [[ $(id -u) == 0 ]] || { echo "must run as root: debootstrap and chroot"; return; }
   local tool
   for tool in debootstrap unshare; do command -v "$tool" >/dev/null || { echo "$tool is missing"; return; }; done
-  [[ -n $(bare_root_mirror) ]] || echo "apt of this machine knows no mirror of $bare_release"
+  [[ -n $(bare_root_mirror) ]] || echo "apt of this machine knows no mirror of Debian"
 }
 
 bare_root_mirror() {
   # shellcheck disable=SC2016  # apt fills the fields in
-  apt-get indextargets --format '$(RELEASE) $(COMPONENT) $(SITE)' 'Created-By: Packages' | awk -v r="$bare_release" '$1 == r && $2 == "main" {print $3; exit}'
+  apt-get indextargets --format '$(ORIGIN) $(RELEASE) $(COMPONENT) $(SITE)' 'Created-By: Packages' |
+    awk -v own="$(. /etc/os-release && echo "$VERSION_CODENAME")" '$1 == "Debian" && $2 == own && $3 == "main" {print $4; exit}'
 }
 
 # make_bare_root ROOT PACKAGE,..: the smallest Debian and these packages, in a folder that is empty or does not exist.

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The Debian packages of a build, without root rights and without a network: what is in them and where, what lintian says; installed into an
-# empty tree by dpkg, a sample run by the installed program, removed without a trace. In a clean root with its dependencies: tests/first_hour.
+# The Debian packages and the tarball of a build, without root rights and without a network: what is in them and where, what lintian says; installed into an
+# empty tree by dpkg, a sample run by the installed program, removed without a trace. The tarball has every library that it needs. In clean roots:
+# tests/first_hour, tests/install/tarball_roots.sh.
 #   package_test.sh BUILD_FOLDER
 set -euo pipefail
 build=$(realpath "$1")
@@ -79,4 +80,31 @@ done
 
 in_tree --purge toothpath
 [[ $(tree) == "$before" ]] || fail "left behind: $(diff <(echo "$before") <(tree))"
+# The folder of the tarball: whole, where it is made and where it is moved to; a library that is missing or looked for elsewhere is told.
+bundle=$work/bundle
+tarball=$source/tools/package/tarball.sh
+"$tarball" "$build" toothpath --tree "$work/made" >"$work/tarball.log" 2>&1 || { cat "$work/tarball.log" >&2; fail "tarball"; }
+mv "$work/made" "$bundle"
+source "$source/tools/package/bundle_check.sh"
+needs=$(check_bundle "$bundle") || fail "the tarball is not whole"
+[[ -s $bundle/share/doc/toothpath/LICENSE && -s $bundle/share/doc/toothpath/libraries/libgmp10.copyright ]] || fail "no licences in the tarball"
+elsewhere=$(env -i /usr/bin/ldd "$bundle/bin/toothpath" "$bundle"/lib/toothpath/modules/*.so | awk '$2 == "=>" {print $1, $3}' | while read -r library path; do
+  is_of_glibc "$library" || [[ $(realpath "$path") == "$(realpath "$bundle")"/* ]] || echo "$library $path"; done)
+[[ -z $elsewhere ]] || fail "the program of the tarball takes libraries of this machine: $elsewhere"
+env -i "$bundle/bin/toothpath" run "$bundle/share/doc/toothpath/samples/spur_quick.toml" --out "$work/of_bundle" --quiet || fail "the sample by the program of the tarball"
+cmp -s "$work/of_bundle/program.ngc" "$work/out/program.ngc" || fail "the tarball makes another program"
+env -i "$bundle/bin/toothpath" fit "$bundle/share/doc/toothpath/samples/cylindrical_spur.toml" --points "$work/spur/inspection.csv" --out "$work/fit_of_bundle" --quiet ||
+  fail "the program of the tarball does not open its library of least squares"
+told() { ! check_bundle "$bundle" >/dev/null 2>"$work/told" && grep -q "$1" "$work/told" || fail "check_bundle does not tell $1: $(cat "$work/told")"; }
+mv "$bundle/lib/toothpath/libgmp.so.10" "$work/"
+told 'libgmp.so.10 is missing, bin/toothpath needs it'
+mv "$work/libgmp.so.10" "$bundle/lib/toothpath/"
+for path in '/usr/lib' "\$ORIGIN/../../.."; do
+  patchelf --force-rpath --set-rpath "$path" "$bundle/lib/toothpath/libzip.so.4"
+  told 'lib/toothpath/libzip.so.4 looks for libraries in'
+done
+patchelf --force-rpath --set-rpath "\$ORIGIN" "$bundle/lib/toothpath/libzip.so.4"
+check_bundle "$bundle" >/dev/null || fail "the tarball is not whole any more"
+
+echo "tarball: $needs"
 echo "packages: $(cd "$work" && du -h --apparent-size ./*.deb | tr '\t\n' '  ')"
