@@ -62,6 +62,12 @@ SourcePosition Machine::where(std::string_view key) const {
   return found == positions.end() ? SourcePosition{file, 0, 0} : found->second;
 }
 
+double Machine::top_mm() const {
+  const std::vector<double>& reference = post.reference_positions[0];
+  if (post.retracts_to_reference && reference.size() > 2) return reference[2];
+  return chain.linear[2].max_mm - limit_margin.linear_mm;
+}
+
 double Machine::exact_corner_mm() const {
   constexpr double kUsual = 0.0005, kPeriod = 0.001 / 60;  // mm, min
   double square = 0;

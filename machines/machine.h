@@ -66,6 +66,7 @@ struct PostSettings {
   /// Where G28 and G30 (G75 FP=1 and FP=2, the zero of M92) take the axes, machine coordinates: X Y Z [mm], then the
   /// rotaries in the order of their letters in the file [deg]. Empty: not said.
   std::array<std::vector<double>, 2> reference_positions;
+  bool retracts_to_reference = false;  ///< G28 takes Z to its top, to where `reference_positions[0]` is; else G53
   OwnLines own_lines;
   LengthReference length_reference = LengthReference::tip;
   PoleOption pole = PoleOption::error;
@@ -111,6 +112,9 @@ struct Machine {
   /// 0.0005 or, if the axes have accelerations, what those leave at the rim of the largest part and a servo period of 1
   /// ms if that is more (LinuxCNC, docs/dialects.md).
   [[nodiscard]] double exact_corner_mm() const;
+  /// Z to which programs retract, machine coordinates of the gauge line [mm]: the end of its travel less
+  /// `limit_margin`, or that of the reference position where `post.retract` says so.
+  [[nodiscard]] double top_mm() const;
   /// Every axis of the chain has an acceleration.
   [[nodiscard]] bool has_acceleration() const;
   /// Every axis of the chain has a jerk.

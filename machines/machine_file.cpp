@@ -342,6 +342,7 @@ void read_own_lines(toml::TableReader& post, PostSettings& settings) {
   for (std::size_t i = 0; i < 2; ++i)
     if (const auto place = post.optional_number_list(keys[i], {-kLargestLength, kLargestLength, " mm or deg"}, {3, 5}))
       settings.reference_positions[i] = *place;
+  settings.retracts_to_reference = post.word_or("retract", {"machine", "reference"}, "machine") == "reference";
 }
 
 void read_post(toml::TableReader post, PostSettings& settings) {

@@ -177,7 +177,7 @@ void refuse_checks(const job::Job& job, const machines::Machine& machine, const 
   const bool named = std::any_of(check.lines.begin(), check.lines.end(),
                                  [](const std::string& line) { return line.find("{tolerance}") != std::string::npos; });
   const double last_digit = std::pow(10.0, -dialect.format.linear_decimals);
-  const double top = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
+  const double top = machine.top_mm();
   for (std::size_t k = 0; k < job.tools.size(); ++k) {
     const tool::ToolAssembly& tool = job.tools[k];
     if (tool.sister_of != 0) continue;

@@ -141,6 +141,10 @@ constexpr Meaning kMachineMeanings[] = {
      "then "
      "the rotaries in deg, as [chain] names them. `check` refuses these words without it."},
     {"post.second_reference_position", "The same of G30 (Siemens: G75 FP=2)."},
+    {"post.retract",
+     "How programs take Z to its top. `\"machine\"`: by G53, to the end of its travel less `limit_margin`; "
+     "`\"reference\"` (Fanuc, Mitsubishi, Haas): by `G91 G28 Z0.`, to Z of `reference_position`, which must be stated. "
+     "G43.4 is ended by G53 all the same ([dialects](dialects.md#how-z-goes-to-its-top))."},
     {"post.start",
      "Lines of the shop behind the start of every program; templates ([dialects](dialects.md#own-lines))."},
     {"post.tool_change",

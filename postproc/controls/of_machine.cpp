@@ -297,9 +297,26 @@ class Judge {
                check.position_mm[static_cast<int>(a)], axis.min_mm, axis.max_mm);
   }
 
-  /// Every axis has a place, within its travel.
+  /// G28 in the place of G53.
+  void retract() {
+    constexpr const char* kKey = "post.retract";
+    if (words_.reference_retract.empty()) {
+      std::string takers;
+      for (const Control* c : all())
+        if (!c->words.reference_retract.empty())
+          takers += fmt::format("{}\"{}\"", takers.empty() ? "" : ", ", c->words.name);
+      refuse(kKey, "post.retract = \"reference\" belongs to dialect {}, this is \"{}\"", takers, words_.name);
+    } else if (machine_.post.reference_positions[0].empty()) {
+      refuse(kKey,
+             "post.retract = \"reference\": nothing says how high Z goes: post.reference_position = [X, Y, Z, "
+             "rotaries] does");
+    }
+  }
+
+  /// Every axis has a place, within its travel; Z that goes up to there has it at its top.
   void references() {
     const machines::KinematicChain& chain = machine_.chain;
+    if (machine_.post.retracts_to_reference) retract();
     for (std::size_t n = 0; n < 2; ++n) {
       const std::vector<double>& place = machine_.post.reference_positions[n];
       if (place.empty()) continue;
@@ -404,6 +421,7 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
     d.blend = false;
     std::erase(d.start, "{corners}");
   }
+  if (post.retracts_to_reference) d.retract = d.reference_retract;
   d.own_start = post.own_lines.start;
   d.own_between_teeth = post.own_lines.between_teeth;
   d.own_end = post.own_lines.end;
@@ -464,7 +482,7 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
   if (machine.tcp != machines::TcpMode::none) c.chain = machine.chain;
   if (const text::NcPlanes& planes = control->words.planes; !planes.on.empty())
     if (!planes.zero.empty() || counts_from_zero(machine.chain)) c.plane_chain = machine.chain;
-  c.top_mm = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
+  c.top_mm = machine.top_mm();
   c.exact_path_mm = machine.exact_corner_mm();
   c.corner_mm = machine.post.corner_tolerance_mm;
   c.index_offset = machine.post.index_offset;

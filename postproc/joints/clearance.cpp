@@ -60,7 +60,7 @@ std::optional<double> room_at_start(const machines::Machine& machine, const Gear
   std::array<double, 2> start{};
   if (machine.tcp != machines::TcpMode::none && options.tcp_starts_at_zero && !options.tilted_planes)
     for (std::size_t k = 0; k < chain.rotary_count(); ++k) start[k] = chain.rotary(k).zero_rad;
-  const double top = chain.linear[2].max_mm - machine.limit_margin.linear_mm;
+  const double top = machine.top_mm();
   return top - tool_length_mm - body_top(chain, gear, body, start) - options.clearance_margin_mm;
 }
 

@@ -172,7 +172,7 @@ class ProgramBuilder {
     program_.tcp = tcp() ? machine_.tcp : machines::TcpMode::none;
     program_.corners = options_.corners;
     program_.tcp_starts_at_zero = tcp() && options_.tcp_starts_at_zero;
-    const double top = chain_.linear[2].max_mm - machine_.limit_margin.linear_mm;
+    const double top = machine_.top_mm();
     const double unit = std::pow(10.0, options_.format.linear_decimals);
     program_.retract_z_mm = std::floor(top * unit + 1e-6) / unit;
     program_.assumed = machine_.assumed_keys;

@@ -30,7 +30,7 @@ class SelfTestBuilder {
     p.tcp = machine.tcp == machines::TcpMode::none ? machines::TcpMode::none : machines::TcpMode::angles;
     p.tcp_starts_at_zero = dialect.tcp_starts_at_zero;
     const double unit = static_cast<double>(numbers::power_of_ten(dialect.format.linear_decimals));
-    p.retract_z_mm = std::floor((machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm) * unit + 1e-6) / unit;
+    p.retract_z_mm = std::floor(machine.top_mm() * unit + 1e-6) / unit;
     p.work_offset_at_mm = test.point_mm;
     if (machine.post.transformation_takes_rotary_offset) p.index_axis = 3;
     p.assumed = machine.assumed_keys;

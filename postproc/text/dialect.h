@@ -135,6 +135,7 @@ struct NcDialect {
   NcLinesOfText message;              ///< ahead of an operation: what the control shows meanwhile; {operation_type}
   NcLinesOfText body_end;             ///< ahead of sub-programs that stand behind the main program
   NcLinesOfText retract;              ///< Z to its top, machine coordinates
+  NcLinesOfText reference_retract;    ///< the same by the reference position; empty: the machine file cannot ask for it
   NcLinesOfText tool_call;            ///< behind the retract, where the tool changes: fetches it
   NcLinesOfText tool_keep;            ///< in their place where it stays
   NcLinesOfText tool_change;          ///< behind these: safe start, spindle

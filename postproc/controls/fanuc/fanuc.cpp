@@ -39,6 +39,7 @@ text::NcDialect fanuc_words() {
   d.corner_flow = "G64";
   d.start = {"{safe_start}", "{offset}"};
   d.retract = {"G0 G49 G53 Z{top}"};
+  d.reference_retract = {"G91 G28 Z0.", "G90"};  // G49 of its own could move Z by the length
   d.tool_call = {"T{tool} M6"};
   d.tool_next = {"T{next}"};
   d.tool_change = {"{safe_start}", "{offset}", "S{speed} M3"};
