@@ -19,6 +19,7 @@
 #include "app/job/flank_points.h"
 #include "app/job/loose_points.h"
 #include "app/proposal/explanations.h"
+#include "app/proposal/material.h"
 #include "app/questions/choose.h"
 #include "geometry/base/json_text.h"
 #include "machines/machine_file.h"
@@ -347,6 +348,7 @@ void new_options(OptionSet& set, NewRequest& request) {
   set.number("--tolerance", request.tolerance_um, "the same by the tolerance of their form (default 10)",
              proposal::kTolerance);
   set.word("--coolant", request.coolant, "as far as the control has it", "WAY", questions::kCoolantWords);
+  set.word("--material", request.material, "of the part: forces follow", "NAME", proposal::material_words());
   set.number("--blank-top", request.blank_top_mm,
              "height of the blank's top above the face of the table (default: where the travels have most room)",
              questions::kBlankTop);

@@ -25,6 +25,8 @@ constexpr std::pair<std::string_view, std::string_view> kExplanations[] = {
      "How far the flank may be off its form, all causes together. The program takes up to four fifths of it; "
      "class A of ISO 1328-1 allows (0.55 m + 5) sqrt(2)^(A - 5) um"},
     {"--coolant", "What the control can switch on, by its machine file"},
+    {"--material",
+     "The forces of the cut follow, and from them how far slender tools bend: an estimate, +-50 % (docs/force.md)"},
     {"--blank-top", "Fixture and blank together. Where you are free, \"any\" leaves the most room in the travels"},
     {"--teeth", "Of the gear that is cut here, not of its mate"},
     {"--mate-teeth", "Of the gear that it runs with: with the teeth of this one it gives the pitch cones"},

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "app/proposal/gear_limits.h"
+#include "app/proposal/material.h"
 #include "app/proposal/points_gear.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
@@ -413,6 +414,7 @@ std::string job_text(const Draft& draft, const LibraryWords& library, const std:
   text += line("work_offset_at", vector_text(draft.work_zero_mm),
                draft.zero_on_top ? "on the gear axis; Z 0 is the top of the blank" : "the origin of the gear");
   if (!draft.wishes.coolant.empty()) text += "\n[coolant]\n" + line("mode", toml::quoted(draft.wishes.coolant));
+  text += material_text(draft.wishes.material);
   const auto tool = [&](const tool::ToolAssembly& t) {
     return library.file.empty() ? tool_text(t, draft.depth_mm) : library_tool_text(t, library);
   };

@@ -80,6 +80,7 @@ struct Wishes {
   std::array<std::optional<double>, kQuantities> numbers{};
   Quality quality;
   std::string coolant;                 ///< as a job says it; empty: none
+  std::string material;                ///< a word of `material_words`; empty: not said
   std::optional<double> blank_top_mm;  ///< above the face of the table; nothing: where the travels have most room
   int hand = 0;  ///< of a spiral bevel gear by a drawing, of the inner half of a herringbone: 1 right, -1 left
 

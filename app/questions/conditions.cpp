@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/base/option_number.h"
+#include "app/proposal/material.h"
 #include "app/questions/steps.h"
 #include "geometry/base/printable.h"
 
@@ -85,6 +86,15 @@ DoneOrErrors wish_coolant(Wishes& wishes, const std::string& given, const propos
   return Ok{};
 }
 
+/// Forces follow from it; without a terminal nothing is said of it.
+DoneOrErrors wish_material(Wishes& wishes, const std::string& given, Dialog& dialog) {
+  if (given.empty() && !dialog.asks()) return Ok{};
+  const auto word = dialog.word("--material", "material of the part", given, proposal::material_words());
+  if (auto* errors = word.refused()) return *errors;
+  wishes.material = word.value();
+  return Ok{};
+}
+
 constexpr const char* kAnyHeight = "any";
 
 /// How high the blank is clamped.
@@ -125,11 +135,13 @@ DoneOrErrors wish_conditions(Wishes& wishes, const Given& request, Dialog& dialo
     for (const auto& [option, given] : {std::pair("--class", request.iso_class.has_value()),
                                         {"--tolerance", request.tolerance_um.has_value()},
                                         {"--coolant", !request.coolant.empty()},
+                                        {"--material", !request.material.empty()},
                                         {"--blank-top", request.blank_top_mm.has_value()}})
       if (given) return usage(fmt::format("{} does not belong to --cut shaped", option));
     return Ok{};
   }
   if (auto done = wish_quality(wishes, request, dialog); done.refused()) return done;
+  if (auto done = wish_material(wishes, request.material, dialog); done.refused()) return done;
   if (auto done = wish_coolant(wishes, request.coolant, machine, dialog); done.refused()) return done;
   return wish_blank_top(wishes, request.blank_top_mm, machine, dialog);
 }

@@ -17,7 +17,7 @@ struct Given {
   std::string points, points_unit, root, tip;  ///< of a gear by points
   std::string rexs, left_flank, ratio_of_roll;
   std::string hand;  ///< of a spiral bevel gear by a drawing, of the inner half of a herringbone
-  std::string coolant, accept_assumed;
+  std::string coolant, material, accept_assumed;
   std::optional<int> component, iso_class;
   std::optional<double> tolerance_um, blank_top_mm;
   std::optional<double> dedendum, root_radius;

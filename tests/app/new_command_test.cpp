@@ -284,7 +284,8 @@ TEST(New, TolerancesFollowFromTheQualityAskedFor) {
   const TestDir dir;
   const std::string file = dir / "job.toml";
   const Finished made = run_new(
-      gear("face", "ball", "xyzac_large", {"--teeth", "60", "--module", "2", "--class", "8", "--coolant", "flood"}),
+      gear("face", "ball", "xyzac_large",
+           {"--teeth", "60", "--module", "2", "--class", "8", "--coolant", "flood", "--material", "hardened_steel"}),
       file);
   ASSERT_EQ(made.exit_code, 0) << made.err;
   const std::string text = file_text(file);
@@ -300,6 +301,10 @@ TEST(New, TolerancesFollowFromTheQualityAskedFor) {
       std::string::npos)
       << text;
   EXPECT_NE(text.find("\n[coolant]\nmode = \"flood\"\n"), std::string::npos) << text;
+  // Chips of 5 and 50 um cost K h + K_e = 4650 h^0.76 N for a mm of edge, to the two digits that are written.
+  EXPECT_EQ(last_number(text, "cutting_coefficient"), 8800) << text;
+  EXPECT_EQ(last_number(text, "edge_coefficient"), 39) << text;
+  for (const double h : {0.005, 0.05}) EXPECT_NEAR(8800 * h + 39, 4650 * std::pow(h, 0.76), 0.01 * 8800 * h + 0.6);
   EXPECT_NE(text.find("# on the gear axis; Z 0 is the top of the blank\n"), std::string::npos) << text;
   EXPECT_LT(nlohmann::json::parse(made.out)["report"]["proof"]["gouge_um"]["bound"], 1000 * 0.2 * T);
 }
@@ -309,6 +314,7 @@ TEST(New, RefusesConditionsThatDoNotHold) {
   const std::pair<Words, const char*> cases[] = {
       {{"xyzac_large", "--class", "6", "--tolerance", "8"}, "error: --class and --tolerance say the same of a gear"},
       {{"xyzac_large", "--coolant", "through_spindle"}, "error: --coolant = through_spindle: "},
+      {{"xyzac_large", "--material", "stone"}, "error: --material = \"stone\" is not one of steel, hardened_steel, "},
       {{"xyzac_large", "--blank-top", "80"}, "error: --blank-top counts from the face of the table, and "},
       {{"t600s", "--accept-assumed", "no"}, "error: --accept-assumed: T-600S has values that are assumed ("},
       {{"t600s", "--accept-assumed", "perhaps"}, "error: --accept-assumed = \"perhaps\" is not one of yes, no"},
@@ -323,6 +329,9 @@ TEST(New, RefusesConditionsThatDoNotHold) {
   const Finished shaped =
       run_new(gear("face", "shaped", "y514", {"--teeth", "53", "--module", "2", "--class", "6"}), dir / "job.toml");
   EXPECT_TRUE(shaped.err.starts_with("error: --class does not belong to --cut shaped")) << shaped.err;
+  const Finished soft = run_new(
+      gear("face", "shaped", "y514", {"--teeth", "53", "--module", "2", "--material", "steel"}), dir / "job.toml");
+  EXPECT_TRUE(soft.err.starts_with("error: --material does not belong to --cut shaped")) << soft.err;
   EXPECT_TRUE(names_in(dir.path()).empty());
 }
 
@@ -421,7 +430,7 @@ TEST(New, AsksOnATerminalAndShowsLimitsBeforeTheEndsOfTheTeeth) {
   int exit_code = -1;
   const std::string shown =
       on_terminal({TOOTHPATH_BINARY, "new", "-o", dir / "job.toml"},
-                  "gace\nface\nball\nxyzac_large\nclass 12\nclass 7\n\n9\n60\n\n2\n\n\n\n\n\n", exit_code);
+                  "gace\nface\nball\nxyzac_large\nclass 12\nclass 7\n\n\n9\n60\n\n2\n\n\n\n\n\n", exit_code);
   EXPECT_EQ(exit_code, 0) << shown;
   EXPECT_NE(shown.find("did you mean \"face\"?"), std::string::npos) << shown;
   EXPECT_NE(shown.find("teeth of the gear (10 to 1000): "), std::string::npos) << shown;
@@ -478,7 +487,7 @@ TEST(New, AsksForAssumedValuesAndWhereTheBlankStands) {
   int exit_code = -1;
   const std::string shown = on_terminal({TOOTHPATH_BINARY, "new", "--gear", "face", "--cut", "ball", "--machine",
                                          "t600s", "--teeth", "60", "--module", "1.5", "-o", dir / "job.toml"},
-                                        "no\nyes\n12 um\n\nhigh\n60\n\n\n\n\n\n\n", exit_code);
+                                        "no\nyes\n12 um\naluminium\n\nhigh\n60\n\n\n\n\n\n\n", exit_code);
   EXPECT_EQ(exit_code, 0) << shown;
   EXPECT_NE(shown.find("assumed in the machine file, measured by nobody: "), std::string::npos) << shown;
   EXPECT_NE(shown.find("not possible: --accept-assumed: T-600S has values that are assumed ("), std::string::npos)
@@ -489,6 +498,8 @@ TEST(New, AsksForAssumedValuesAndWhereTheBlankStands) {
   EXPECT_NE(shown.find(", or \"any\""), std::string::npos) << shown;
   const std::string text = file_text(dir / "job.toml");
   EXPECT_NE(text.find("# Form of the flanks: T = 12.00 um, as asked for.\n"), std::string::npos) << text;
+  EXPECT_EQ(last_number(text, "cutting_coefficient"), 1500) << text;
+  EXPECT_EQ(last_number(text, "edge_coefficient"), 7.3) << text;
   const auto zero = text.find("work_offset_at = [0.0, 0.0, ");
   ASSERT_NE(zero, std::string::npos) << text;
   EXPECT_NEAR(std::stod(text.substr(zero + 28)), std::stod(shown.substr(at + face.size())) + 60, 1e-3) << text;
@@ -558,7 +569,7 @@ TEST(New, AsksAgainForWhatTheMachineDoesNotTurn) {
   int exit_code = -1;
   const std::string shown = on_terminal({TOOTHPATH_BINARY, "new", "--gear", "face", "--cut", "ball", "--machine",
                                          "t600s", "--teeth", "150", "--module", "1.5", "-o", dir / "job.toml"},
-                                        "\n\n\n\n"
+                                        "\n\n\n\n\n"
                                         "\n\n\n\n\n126\n116\n",
                                         exit_code);
   EXPECT_EQ(exit_code, 0) << shown;
@@ -724,7 +735,7 @@ TEST(New, OffersOnlyToolsThatReachAndSaysWhyTheOthersDoNot) {
   words.insert(words.begin(), {TOOTHPATH_BINARY, "new"});
   int exit_code = -1;
   const std::string shown = on_terminal(words,
-                                        "\n\n"
+                                        "\n\n\n"
                                         "\n\n\n\n\n\n4\n1\n",
                                         exit_code);
   EXPECT_EQ(exit_code, 0) << shown;
@@ -747,7 +758,7 @@ TEST(New, AsksNothingAboutToolsOfWhichNoneReachesTheRoot) {
   words.insert(words.begin(), {TOOTHPATH_BINARY, "new"});
   int exit_code = -1;
   const std::string shown = on_terminal(words,
-                                        "\n\n"
+                                        "\n\n\n"
                                         "\n\n\n0.2\n\n\n\x04",
                                         exit_code);
   EXPECT_EQ(exit_code, 2) << "the answers end\n" << shown;
@@ -783,7 +794,7 @@ TEST(New, AsksOnATerminalForWhatALibraryDoesNotSay) {
   int exit_code = -1;
   // The numbers of the gear; the tools; a wrong kind, the right one; a wrong shank, the right one; the rest.
   const std::string shown = on_terminal(words,
-                                        "\n\n"
+                                        "\n\n\n"
                                         "\n\n\n\n\n\n7\n\nflat_end_mill\nball_end_mill\n-4\n4\n27\n[[11, 11, 30]]\n7\n",
                                         exit_code);
   EXPECT_EQ(exit_code, 0) << shown;
