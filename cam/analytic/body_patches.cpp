@@ -77,7 +77,8 @@ void BodyPatches::add_block(tooth_space::Piece piece, const std::vector<SheetCel
     for (const auto& c : cells) add_block(piece, {c});  // a smaller box may do
     return;
   } else {
-    block.bend = sheet_bend(block, half_a, half_b);
+    const auto sliced = sliced_bend(space_, piece, block.frame, half_a, half_b);
+    block.bend = sliced ? *sliced : sheet_bend(block, half_a, half_b);
   }
   blocks_.push_back(block);
   for (const auto& c : cells) {

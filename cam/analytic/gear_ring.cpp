@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kCellLength = 0.45;  // mm along the tooth
 constexpr int kEndPoints = 3000;      // on the profile at an end of the ring
+constexpr double kEndSag = 2e-4;      // mm: where the end edge may leave them by more, points are put between them,
+constexpr int kMostBetween = 15, kEndRounds = 3;  // so many at a time, so often
 constexpr int kBands = GearDistance::kBands;
 constexpr int kTable = 257;           // places along the teeth
 constexpr std::size_t kLandStep = 4;  // of them, along a cell of a land
@@ -157,7 +159,7 @@ class Maker {
     for (int k = 0; k <= kEndPoints; ++k) {
       const auto q = R.sheet.raw(5.0 * k / kEndPoints, s);
       if (!q || chart_.up(q->contact.p) > tip) continue;
-      places.push_back({q->piece, q->u, q->v, q->contact.p});
+      places.push_back({q->piece, q->u, q->v, q->contact.p, 5.0 * k / kEndPoints});
       profile.push_back(across(q->contact.p, middle));
     }
     // The corners where the flanks leave through the tip surface.
@@ -168,10 +170,46 @@ class Maker {
       const auto q = space_.point(piece, c->u, c->v);
       if (!q) continue;
       const Vec2 corner(next_to(middle, azimuth(q->p)), tip);
-      const EndPlace place{piece, c->u, c->v, q->p};
+      const EndPlace place{piece, c->u, c->v, q->p, corner_sigma(places, side, c->u)};
       places.insert(side > 0 ? places.begin() : places.end(), place);
       profile.insert(side > 0 ? profile.begin() : profile.end(), corner);
     }
+  }
+  /// Of a corner beside the first or the last place: sigma goes evenly with u.
+  [[nodiscard]] static double corner_sigma(const std::vector<EndPlace>& places, int side, double u) {
+    if (places.size() < 2) return places.empty() ? 0 : places.front().sigma;
+    const EndPlace &a = side > 0 ? places.front() : places.back(),
+                   &b = side > 0 ? places[1] : places[places.size() - 2];
+    return a.sigma + (u - a.u) / (b.u - a.u) * (b.sigma - a.sigma);
+  }
+
+  /// Proven sags of an end line, which gets more places where they are large: beside an undercut edge flank and fillet
+  /// bend quickly.
+  [[nodiscard]] std::vector<double> end_sags(double s, std::vector<Vec2>& profile, std::vector<EndPlace>& places) {
+    std::vector<double> sags = end_edge_sags(space_, places);
+    const double tip = space_.tip(s), middle = R.lookup(R.mid, s);
+    for (int round = 0; round < kEndRounds; ++round) {
+      std::vector<EndPlace> closer;
+      std::vector<Vec2> beside;
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        closer.push_back(places[k]);
+        beside.push_back(profile[k]);
+        if (k + 1 == places.size() || sags[k] <= kEndSag) continue;  // below 0: it is not known
+        const int parts = std::min(kMostBetween + 1, 1 + int(std::ceil(std::sqrt(sags[k] / kEndSag))));
+        for (int part = 1; part < parts; ++part) {
+          const double sigma = places[k].sigma + (places[k + 1].sigma - places[k].sigma) * part / parts;
+          const auto q = R.sheet.raw(sigma, s);
+          if (!q || chart_.up(q->contact.p) > tip) continue;
+          closer.push_back({q->piece, q->u, q->v, q->contact.p, sigma});
+          beside.push_back(across(q->contact.p, middle));
+        }
+      }
+      if (closer.size() == places.size()) break;
+      places = std::move(closer);
+      profile = std::move(beside);
+      sags = end_edge_sags(space_, places);
+    }
+    return sags;
   }
 
   void tables() {
@@ -217,10 +255,11 @@ class Maker {
 
   void end_edges() {
     for (std::size_t n = 0; n < 2; ++n) {
+      const auto sags = n == 0 ? end_sags(R.s_from, R.end_from, places_[n]) : end_sags(R.s_to, R.end_to, places_[n]);
       std::vector<Vec3> line;
       for (const auto& place : places_[n]) line.push_back(place.p);
       const std::size_t first = R.edges.size();
-      add_edge(line, end_edge_sags(space_, places_[n]), "end edge");
+      add_edge(line, sags, "end edge");
       for (std::size_t k = first; k < R.edges.size(); ++k) border_sag_[n] = std::max(border_sag_[n], R.edges[k].sag);
       if (chart_.sine == 0) continue;
       // What is straight in azimuth and height is bent where the end is no cylinder.

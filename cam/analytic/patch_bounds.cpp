@@ -51,12 +51,18 @@ std::optional<PatchBend> patch_bend(const tooth_space::ToothSpace& space, tooth_
   const auto whole = PatchBend::of(jet->second);
   if (!whole || !loose(*whole)) return whole;
   // What intervals add to the truth shrinks with the box: the hull of slices tells better.
-  auto second = jet->second;
+  const auto sliced = sliced_bend(space, piece, frame, half_a, half_b);
+  return sliced ? sliced : whole;
+}
+
+std::optional<PatchBend> sliced_bend(const tooth_space::ToothSpace& space, tooth_space::Piece piece,
+                                     const PatchFrame& frame, double half_a, double half_b) {
+  std::array<std::array<Interval, 3>, 3> second;
   for (int k = 0; k < kSlices; ++k) {
     PatchFrame slice = frame;
     slice.origin += frame.along_a * (half_a * (2.0 * k + 1 - kSlices) / kSlices);
     const auto part = space.enclosure(piece, slice, half_a / kSlices * kUnit, half_b);
-    if (!part) return whole;
+    if (!part) return {};
     for (std::size_t n = 0; n < second.size(); ++n)
       for (std::size_t c = 0; c < 3; ++c)
         second[n][c] = k == 0 ? part->second[n][c] : hull(second[n][c], part->second[n][c]);

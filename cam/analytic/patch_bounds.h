@@ -43,6 +43,10 @@ struct VectorBound {
 [[nodiscard]] std::optional<PatchBend> patch_bend(const tooth_space::ToothSpace& space, tooth_space::Piece piece,
                                                   const PatchFrame& frame, double half_a, double half_b);
 
+/// The same from slices across a, each with its own bound: where there is none over the whole box.
+[[nodiscard]] std::optional<PatchBend> sliced_bend(const tooth_space::ToothSpace& space, tooth_space::Piece piece,
+                                                   const PatchFrame& frame, double half_a, double half_b);
+
 /// Second derivative by a of the curve in which a piece meets the end surface s = constant through the origin of the
 /// frame, for |a| <= half_a; the curve is followed within |b| <= half_b. Proven like the other.
 [[nodiscard]] std::optional<VectorBound> end_curve_bend(const tooth_space::ToothSpace& space, tooth_space::Piece piece,

@@ -13,6 +13,7 @@ struct EndPlace {
   tooth_space::Piece piece = tooth_space::Piece::root;
   double u = 0, v = 0;
   Vec3 p = Vec3::Zero();
+  double sigma = 0;  ///< across the space, as of an OffsetSheet
 };
 
 /// Sag of every segment between neighbouring places, mm; -1 where no bound is found. The last step of a piece ends at

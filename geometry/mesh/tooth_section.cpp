@@ -53,28 +53,40 @@ std::optional<Solved> at_station(const ToothSpace& space, Piece piece, double u,
   return {};
 }
 
+/// A solved place with the slopes of its line at station s.
+std::optional<SectionLine::Node> node_of(const ToothSpace& space, Piece piece, double u, double v) {
+  const auto q = space.at(piece, u, v);
+  if (!q) return {};
+  const auto& ring = space.outline();
+  const double sv = ring.station(q->p, q->pv), dv = -ring.station(q->p, q->pu) / sv;
+  if (!std::isfinite(dv)) return {};
+  return SectionLine::Node{v, dv, sv};
+}
+
+/// From a node to the u that lies `step` beyond, at station s; where that start is too far off, in halves of the way:
+/// beside an undercut v runs quickly along a fillet. `bend`: how much dv grows on the way.
+std::optional<SectionLine::Node> next_node(const ToothSpace& space, Piece piece, double s, double u, double step,
+                                           const SectionLine::Node& from, double bend, int halvings = 6) {
+  if (const auto solved = at_station(space, piece, u, s, from.v + step * (from.dv + 0.5 * bend), from.sv))
+    if (const auto node = node_of(space, piece, u, solved->v)) return node;
+  if (halvings == 0) return {};
+  const double half_step = 0.5 * step;
+  const auto half = next_node(space, piece, s, u - half_step, half_step, from, 0.5 * bend, halvings - 1);
+  return half ? next_node(space, piece, s, u, half_step, *half, half->dv - from.dv, halvings - 1) : std::nullopt;
+}
+
 /// The line of a piece at station s from a solved place.
 std::optional<SectionLine> followed(const ToothSpace& space, Piece piece, double s, double u_from, double v_from,
                                     double u_to) {
-  const auto& ring = space.outline();
   SectionLine line{u_from, u_to, {}};
   const double step = (u_to - u_from) / SectionLine::kSteps;
-  for (int k = 0; k <= SectionLine::kSteps; ++k) {
-    auto& node = line.nodes[std::size_t(k)];
-    const double u = line.u(double(k) / SectionLine::kSteps);
-    node.v = v_from;
-    if (k > 0) {
-      const auto& before = line.nodes[std::size_t(k - 1)];
-      const double bend = k > 1 ? before.dv - line.nodes[std::size_t(k - 2)].dv : 0;
-      const auto solved = at_station(space, piece, u, s, before.v + step * (before.dv + 0.5 * bend), before.sv);
-      if (!solved) return {};
-      node.v = solved->v;
-    }
-    const auto q = space.at(piece, u, node.v);
-    if (!q) return {};
-    node.sv = ring.station(q->p, q->pv);
-    node.dv = -ring.station(q->p, q->pu) / node.sv;
-    if (!std::isfinite(node.dv)) return {};
+  for (std::size_t k = 0; k < line.nodes.size(); ++k) {
+    const double u = line.u(double(k) / SectionLine::kSteps),
+                 bend = k > 1 ? line.nodes[k - 1].dv - line.nodes[k - 2].dv : 0;
+    const auto node =
+        k == 0 ? node_of(space, piece, u, v_from) : next_node(space, piece, s, u, step, line.nodes[k - 1], bend);
+    if (!node) return {};
+    line.nodes[k] = *node;
   }
   return line;
 }
@@ -180,9 +192,11 @@ std::optional<SectionPoint> ToothSection::on_line(Piece piece, const SectionLine
   const auto &a = line.nodes[k], &b = line.nodes[k + 1];
   const double t = at - double(k), w = 1 - t, step = (line.u_to - line.u_from) / SectionLine::kSteps;
   const double start = w * w * (1 + 2 * t) * a.v + t * t * (1 + 2 * w) * b.v + step * t * w * (w * a.dv - t * b.dv);
-  const auto solved = at_station(*space_, piece, u, s_, start, mixed(a.sv, b.sv, t));
-  if (!solved) return {};
-  return SectionPoint{solved->p, {u, solved->v}};
+  if (const auto solved = at_station(*space_, piece, u, s_, start, mixed(a.sv, b.sv, t)))
+    return SectionPoint{solved->p, {u, solved->v}};
+  const auto node = next_node(*space_, piece, s_, u, t * step, a, t * (b.dv - a.dv));
+  const auto q = node ? space_->point(piece, u, node->v) : std::nullopt;
+  return q ? std::optional(SectionPoint{q->p, {u, node->v}}) : std::nullopt;
 }
 
 std::optional<SectionPoint> ToothSection::flank_point(const Side& side, double from_tip) const {

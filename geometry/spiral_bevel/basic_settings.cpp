@@ -62,17 +62,6 @@ Middle middle_of(const SetUp& made) {
   }
   return out;
 }
-
-/// The first way to follow the flanks that is not refused; what is told is of the first.
-Expected<SetUp, Refusal> set_up_one_way(const SpiralBevelParameters& gear) {
-  std::optional<Expected<SetUp, Refusal>> first;
-  for (const ByCircle& way : ways_to_follow(gear)) {
-    auto made = set_up(gear, way);
-    if (!made.refused()) return made;
-    if (!first) first = std::move(made);
-  }
-  return std::move(*first);
-}
 }  // namespace
 
 double pitch_angle(const Drawing& d) {
@@ -129,7 +118,7 @@ Expected<SpiralBevelParameters, Refusal> basic_settings(const Drawing& d, double
     c.cradle_angle_rad = std::atan2(along, across);
     for (std::size_t i = 0; i < 2; ++i)
       c.blades[i] = {r_c + (i == 0 ? 0.5 : -0.5) * width, pressure[i], edge_radius_mm};
-    const auto made = set_up_one_way(p);
+    const auto made = set_up(p);
     if (const Refusal* refusal = made.refused()) return *refusal;
     const Middle is = middle_of(made.value());
     const double turn = beta - 0.5 * (is.spiral_rad[0] + is.spiral_rad[1]),

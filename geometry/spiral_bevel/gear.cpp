@@ -429,17 +429,6 @@ struct Inspected {
   tooth_space::BevelBody body;
 };
 
-/// Sets the flanks up as they are followed one way, and looks at them over the whole face.
-std::vector<Refusal> surfaces(const SpiralBevelParameters& gear, const ByCircle& by_circle, Inspected& out) {
-  auto made = set_up(gear, by_circle);
-  if (auto* refusal = made.refused()) return {std::move(*refusal)};
-  out.space_width_mm = made->space_width_mm;
-  out.space = std::make_shared<const CutterSpace>(made->kernel);
-  Inspection inspection(gear);
-  inspection.surfaces(*out.space);
-  return std::move(inspection.refusals);
-}
-
 Inspected inspected(const SpiralBevelParameters& gear) {
   Inspected out;
   Inspection inspection(gear);
@@ -448,13 +437,20 @@ Inspected inspected(const SpiralBevelParameters& gear) {
   out.refusals = inspection.refusals;
   if (!out.refusals.empty()) return out;
   out.of_surfaces = true;
-  // Where the roll turns back along the face the circles of the blades may go on. What is told is of the rolls.
-  const std::vector<ByCircle> ways = ways_to_follow(gear);
-  for (const ByCircle& way : ways) {
-    auto refusals = surfaces(gear, way, out);
-    if (refusals.empty() || way == ways.front()) out.refusals = std::move(refusals);
-    if (out.refusals.empty()) break;
-  }
+  bool by_circle = false;
+  const auto look = [&](bool by_rolls) {
+    auto made = set_up(gear, by_rolls);
+    if (auto* refusal = made.refused()) return std::vector<Refusal>{std::move(*refusal)};
+    const auto& flanks = made->kernel.flanks;
+    by_circle = flanks[0].by_circle || flanks[1].by_circle;
+    out.space_width_mm = made->space_width_mm;
+    out.space = std::make_shared<const CutterSpace>(made->kernel);
+    Inspection over_face(gear);
+    over_face.surfaces(*out.space);
+    return std::move(over_face.refusals);
+  };
+  out.refusals = look(false);
+  if (!out.refusals.empty() && by_circle) out.refusals = look(true);  // what is told is of the rolls
   if (!out.refusals.empty()) return out;
   out.body = body_of(gear, *out.space);
   if (auto bad = out.body.refusal(out.space->outline())) out.refusals = {std::move(*bad)};

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/followed.h"
 
 namespace toothpath::spiral_bevel {
 namespace {
@@ -17,6 +18,7 @@ using tooth_space::Piece;
 constexpr double kWidestRoll = 1.3;  // rad from the middle of the face; what is rolled is less than half of it
 constexpr int kPlaces = 520, kHalvings = 60;
 constexpr double kSameRoot = 1e-9;  // mm and rad: two cuts leave one root cone
+constexpr double kUneven = 8;       // s by v or v by s: a flank that is followed worse asks for the other way
 
 Chart chart_of(const SpiralBevelParameters& gear) {
   return {-std::sin(gear.pitch_angle_rad), std::cos(gear.pitch_angle_rad)};
@@ -117,18 +119,6 @@ bool find_middle(CutFlank& f, const Chart& chart, double s_mean) {
   return true;
 }
 
-/// What solves a place at s_to, from what does at s_from: v grows about as s does. Where that start is too far off, in
-/// halves of the way.
-template <typename T, typename Solve>
-std::optional<T> followed(const T& from, double s_from, double s_to, const T& by_s, const Solve& solve,
-                          int halvings = 6) {
-  const auto there = solve(T(from + (s_to - s_from) * by_s), s_to);
-  if (there || halvings == 0 || s_to == s_from) return there;
-  const double middle = 0.5 * (s_from + s_to);
-  const auto half = followed<T>(from, s_from, middle, by_s, solve, halvings - 1);
-  return half ? followed<T>(*half, middle, s_to, by_s, solve, halvings - 1) : std::nullopt;
-}
-
 /// Up or down a flank at s, from one height to another near it.
 std::optional<Vec2> climbed(const CutterKernel& k, Piece piece, double s, double h_from, double h_to, const Vec2& at) {
   const auto solve = [&](const Vec2& from, double h) { return k.solve(piece, s, h, from); };
@@ -199,6 +189,46 @@ std::optional<Refusal> meet_pitch_cone(const SpiralBevelParameters& gear, Cutter
   return {};
 }
 
+/// How unevenly a flank and its fillet are followed, over the face and a little beyond it: the most that s changes by
+/// v, or v by s. Infinite where they turn back, or are not found, within the face; beyond it that is no more than bad.
+double unevenness(const CutterKernel& k, std::size_t flank) {
+  constexpr int kAlong = 7, kFillet = 12, kFlank = 12;
+  constexpr double kBeyond = 0.1;  // of the face
+  constexpr double kBad = 1e3;
+  using D = Dual<double, 2>;
+  const tooth_space::Chart chart = k.outline().chart;
+  const CutFlank& f = k.flanks[flank];
+  const Piece wall = piece_of(k, flank), fillet = tooth_space::fillet_of(tooth_space::side_of(wall));
+  const double face = k.R_e - k.R_i;
+  double worst = 1;
+  for (int n = 0; n < kAlong; ++n) {
+    const double share = n == 0            ? -kBeyond
+                         : n == kAlong - 1 ? 1 + kBeyond
+                                           : double(n - 1) / (kAlong - 3),
+                 s = -k.R_e + share * face;
+    const double u_tip = k.about_tip(tooth_space::side_of(wall), std::clamp(s, -k.R_e, -k.R_i)).x();
+    double v = s;
+    // From the root through the fillet up the flank.
+    const auto follow = [&](Piece piece, double from, double to, int steps) {
+      const auto at_u = [&](double near, double u) { return k.solve_v(piece, u, s, near); };
+      for (int step = 0; step <= steps; ++step) {
+        const double before = from + (to - from) * std::max(0, step - 1) / steps, u = from + (to - from) * step / steps;
+        v = followed<double>(v, before, u, 0.0, at_u).value_or(NAN);
+        Vec3T<D> p, normal;
+        if (!k.place<D>(piece, D(u), D::variable(v, 1), p, normal)) return false;
+        const double by_v = chart.along(value(p), derivative(p, 1));
+        if (!(by_v > 0)) return false;
+        worst = std::max({worst, by_v, 1 / by_v});
+      }
+      return true;
+    };
+    if (follow(fillet, kPi / 2, f.alpha, kFillet) && follow(wall, f.u_F, u_tip, kFlank)) continue;
+    if (n > 0 && n < kAlong - 1) return INFINITY;
+    worst = std::max(worst, kBad);
+  }
+  return worst;
+}
+
 /// The work turns with the cradle over the whole face.
 std::optional<Refusal> turns_back(const SpiralBevelParameters& gear, const CutterKernel& k, std::size_t flank) {
   const CutFlank& f = k.flanks[flank];
@@ -208,21 +238,34 @@ std::optional<Refusal> turns_back(const SpiralBevelParameters& gear, const Cutte
   return {};
 }
 
-/// Both flanks along the face, by what grows with v.
-std::optional<Refusal> lay_flanks(const SpiralBevelParameters& gear, CutterKernel& k) {
+/// A flank along the face, by what grows with v.
+std::optional<Refusal> lay_flank(const SpiralBevelParameters& gear, CutterKernel& k, std::size_t flank) {
   const double R_m = gear.mean_cone_distance();
-  for (std::size_t i = 0; i < 2; ++i)
-    if (!find_middle(k.flanks[i], chart_of(gear), -R_m))
-      return Refusal{cut_key(gear, i, "radial_distance"),
-                     fail("radial_distance = {:.4f} mm: the {} blade does not pass the middle of the face, cone "
-                          "distance {:.4f} mm, at any roll",
-                          k.flanks[i].S, i == 0 ? "outside" : "inside", R_m)};
-  for (std::size_t i = 0; i < 2; ++i)
-    if (auto refusal = turns_back(gear, k, i)) return refusal;
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (auto refusal = meet_pitch_cone(gear, k, i)) return refusal;
-    lay_rails(k, i);
-  }
+  if (!find_middle(k.flanks[flank], chart_of(gear), -R_m))
+    return Refusal{cut_key(gear, flank, "radial_distance"),
+                   fail("radial_distance = {:.4f} mm: the {} blade does not pass the middle of the face, cone "
+                        "distance {:.4f} mm, at any roll",
+                        k.flanks[flank].S, flank == 0 ? "outside" : "inside", R_m)};
+  if (auto refusal = turns_back(gear, k, flank)) return refusal;
+  if (auto refusal = meet_pitch_cone(gear, k, flank)) return refusal;
+  lay_rails(k, flank);
+  return {};
+}
+
+/// By its roll where that grows evenly enough, else by the place on the circles of its blade if that grows more evenly.
+/// What is told is of the roll.
+std::optional<Refusal> follow_flank(const SpiralBevelParameters& gear, CutterKernel& k, std::size_t flank,
+                                    bool by_rolls) {
+  const Cut& cut = gear.cuts[cut_of(gear, flank)];
+  auto refusal = lay_flank(gear, k, flank);
+  if (by_rolls || !cut.generated || cut.tilt_rad != 0 || !cut.modified.empty()) return refusal;
+  const double by_roll = refusal ? INFINITY : unevenness(k, flank);
+  if (by_roll <= kUneven) return refusal;
+  CutterKernel other = k;
+  other.flanks[flank] = settings_of(gear, flank);
+  other.flanks[flank].by_circle = true;
+  if (lay_flank(gear, other, flank) || !(unevenness(other, flank) < by_roll)) return refusal;
+  k = other;
   return {};
 }
 }  // namespace
@@ -260,18 +303,7 @@ double asked_space_width(const SpiralBevelParameters& gear) {
          0.5 * gear.backlash_mm.value_or(0) * R_m / gear.outer_cone_distance_mm;
 }
 
-std::vector<ByCircle> ways_to_follow(const SpiralBevelParameters& gear) {
-  const auto may = [&](std::size_t flank) {
-    const Cut& cut = gear.cuts[cut_of(gear, flank)];
-    return cut.generated && cut.tilt_rad == 0 && cut.modified.empty();
-  };
-  std::vector<ByCircle> ways;
-  for (const ByCircle& way : {ByCircle{false, false}, {false, true}, {true, false}, {true, true}})
-    if ((!way[0] || may(0)) && (!way[1] || may(1))) ways.push_back(way);
-  return ways;
-}
-
-Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear, const ByCircle& by_circle) {
+Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear, bool by_rolls) {
   SetUp out;
   CutterKernel& k = out.kernel;
   k.teeth = gear.teeth;
@@ -284,11 +316,9 @@ Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear, const ByCircl
   k.tip_slope = -std::tan(gear.tip_angle_rad - gear.pitch_angle_rad);
   const double r_m = gear.mean_cone_distance() * k.sin_d;
   const Cut &concave = gear.cuts[cut_of(gear, 0)], &convex = gear.cuts[cut_of(gear, 1)];
-  for (std::size_t i = 0; i < 2; ++i) {
-    k.flanks[i] = settings_of(gear, i);
-    k.flanks[i].by_circle = by_circle[i];
-  }
-  if (auto refusal = lay_flanks(gear, k)) return std::move(*refusal);
+  for (std::size_t i = 0; i < 2; ++i) k.flanks[i] = settings_of(gear, i);
+  for (std::size_t i = 0; i < 2; ++i)
+    if (auto refusal = follow_flank(gear, k, i, by_rolls)) return std::move(*refusal);
   const bool one_cone = std::abs(concave.root_angle_rad - convex.root_angle_rad) < kSameRoot &&
                         std::abs(root_apex_z(concave) - root_apex_z(convex)) < kSameRoot;
   const bool tilted = concave.tilt_rad != 0 || convex.tilt_rad != 0;

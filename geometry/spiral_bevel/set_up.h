@@ -2,9 +2,7 @@
 // flanks are turned into space 0.
 #pragma once
 
-#include <array>
-#include <functional>
-#include <vector>
+#include <string>
 
 #include "geometry/base/refusal.h"
 #include "geometry/base/result.h"
@@ -32,14 +30,11 @@ struct SetUp {
   CutterKernel kernel;
   double space_width_mm = 0;  ///< arc on the pitch circle at the mean cone distance
 };
-/// Is a flank followed along the face by the place on the circles of its blade, and not by the roll? At small spiral
-/// angles its contact lines run along these circles, and the roll turns back; elsewhere the place on them may turn
-/// back. 0: concave.
-using ByCircle = std::array<bool, 2>;
-/// The ways to follow the flanks of a gear, by rolls first; circles only with an even roll and no tilt.
-[[nodiscard]] std::vector<ByCircle> ways_to_follow(const SpiralBevelParameters& gear);
-/// Refused: a cutter that does not pass the middle of the root, a flank that does not reach the pitch cone there.
-/// @param by_circle  one of `ways_to_follow`
-[[nodiscard]] Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear, const ByCircle& by_circle = {});
+/// A flank is followed along the face by its roll, or by the place on the circles of its blade where the roll would
+/// grow unevenly: at small spiral angles and on steep blades its contact lines run along these circles, and the roll
+/// turns back. That needs an even roll and no tilt. Refused: a cutter that does not pass the middle of the root, a
+/// flank that does not reach the pitch cone there.
+/// @param by_rolls  never by circles
+[[nodiscard]] Expected<SetUp, Refusal> set_up(const SpiralBevelParameters& gear, bool by_rolls = false);
 
 }  // namespace toothpath::spiral_bevel

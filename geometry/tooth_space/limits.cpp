@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/followed.h"
 
 namespace toothpath::tooth_space {
 namespace {
@@ -44,19 +45,29 @@ double room(const ToothSpace& space, double s, int side, const Vec3& centre, dou
 std::optional<double> v_at(const ToothSpace& space, Piece piece, double u, double s) {
   constexpr int kSteps = 20;
   const Chart& chart = space.outline().chart;
-  for (int attempt = 0; attempt < ToothSpace::kStarts; ++attempt) {
-    const auto start = space.start_v(piece, u, s, 0, {}, attempt);
-    if (!start) continue;
-    double v = *start;
+  const auto solved = [&](double v, double at_u) -> std::optional<double> {
     for (int k = 0; k < kSteps; ++k) {
-      const auto q = space.at(piece, u, v);
-      if (!q) break;
+      const auto q = space.at(piece, at_u, v);
+      if (!q) return {};
       const double lack = s - chart.along(q->p);
       if (std::abs(lack) <= 1e-11 * (1 + std::abs(s))) return v;
       v += lack / chart.along(q->p, q->pv);
     }
-  }
-  return {};
+    return {};
+  };
+  const auto from_starts = [&](double at_u) -> std::optional<double> {
+    for (int attempt = 0; attempt < ToothSpace::kStarts; ++attempt)
+      if (const auto start = space.start_v(piece, at_u, s, 0, {}, attempt))
+        if (const auto v = solved(*start, at_u)) return v;
+    return {};
+  };
+  if (const auto v = from_starts(u)) return v;
+  if (!is_fillet(piece)) return {};
+  // Beside an undercut v runs quickly up a fillet: from the root.
+  const Borders b = space.borders(piece);
+  const double root = side_of(piece) > 0 ? b.to : b.from;
+  const auto v = from_starts(root);
+  return v ? followed<double>(*v, root, u, 0.0, solved) : std::nullopt;
 }
 
 std::optional<double> v_at_station(const ToothSpace& space, Piece piece, double u, double station) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 
+#include "cam/analytic/gear_ring.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/plan/milling.h"
 #include "geometry/base/angle.h"
@@ -297,6 +298,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"octoid", [] { return solid_of(narrow_bevel(straight_bevel::Form::octoid)); }},
                     Case{"spiral_pinion", [] { return solid_of(narrow_spiral(nasa_pinion())); }},
                     Case{"spiral_wheel", [] { return solid_of(narrow_spiral(formate_wheel())); }},
+                    Case{"spiral_steep", [] { return solid_of(narrow_spiral(steep_gear(12))); }},
                     Case{"curved", [] { return solid_of(narrow_curved(6, 0)); }},
                     Case{"herringbone", [] { return solid_of(narrow_curved(22, 3.3)); }},
                     Case{"involute", [] { return solid_of(narrow_bevel(straight_bevel::Form::spherical_involute)); }}),
@@ -534,6 +536,16 @@ class PartWithoutBounds final : public tooth_space::ToothedPart {
   std::shared_ptr<const tooth_space::ToothedPart> of_;
   WithoutBounds space_;
 };
+
+/// Flank and fillet of steep blades bend quickly at the ends of the face, too: their edges there are proven closely.
+TEST(RingsOfSteepBlades, AreProvenClosely) {
+  const Solid solid = solid_of(narrow_spiral(steep_gear(12)));
+  const auto ring = analytic::GearRing::make(*solid.part, 0, 1.0);
+  ASSERT_FALSE(ring.refused()) << ring.refused()->diagnostic.message;
+  EXPECT_LT((*ring)->edge_sag, 2.5e-4);
+  EXPECT_EQ((*ring)->unproven_edges, 0u);
+  EXPECT_EQ((*ring)->patches->sampled_blocks(), 0u);
+}
 
 /// What only samples bound is counted.
 TEST(PatchesBySampling, AreCounted) {

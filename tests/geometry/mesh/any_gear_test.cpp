@@ -10,6 +10,7 @@
 #include "geometry/mesh/tooth_mesh.h"
 #include "tests/geometry/cylindrical/samples.h"
 #include "tests/geometry/flank_grid/samples.h"
+#include "tests/geometry/spiral_bevel/samples.h"
 #include "tests/geometry/straight_bevel/samples.h"
 #include "tests/support/sample_gears.h"
 
@@ -171,6 +172,12 @@ TEST(StraightBevelMesh, IsOneClosedBodyOnItsExactSurface) {
     const auto gear = straight_bevel::StraightBevelGear::make(g).value();
     is_one_closed_body(drawn_solid(gear), fmt::format("{}", kind));
   }
+}
+
+/// Curved teeth, nearly undercut: parameters run quickly along their fillets.
+TEST(SpiralBevelMesh, IsOneClosedBodyOnItsExactSurface) {
+  const auto gear = spiral_bevel::SpiralBevelGear::make(steep_gear(8.3)).value();
+  is_one_closed_body(drawn_solid(gear), "steep");
 }
 
 /// Gears by points on a cylinder, a cone and a plane, which looks up and down.

@@ -59,6 +59,13 @@ inline spiral_bevel::SpiralBevelParameters nasa_pinion() {
   return g;
 }
 
+/// The gear with blades so steep that it is nearly undercut: below 8.2801 deg it is.
+inline spiral_bevel::SpiralBevelParameters steep_gear(double blade_deg) {
+  auto g = nasa_gear();
+  for (auto& blade : g.cuts[0].blades) blade.pressure_angle_rad = radians(blade_deg);
+  return g;
+}
+
 /// The gear's cutter set so that it cuts the wheel by plunging, without a roll.
 inline spiral_bevel::SpiralBevelParameters formate_wheel() {
   auto g = nasa_gear();
