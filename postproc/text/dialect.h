@@ -46,6 +46,7 @@ struct NcLoop {
   NcLinesOfText before, after, call;
   NcLinesOfText pick;  ///< the tooth from its place in the order, by whole numbers; in sequence the place is the tooth
   std::string place, tooth;  ///< the variables of place and picked tooth
+  NcLinesOfText define;      ///< ahead of all blocks: the variables, {counters}: `place`, in another order `tooth` too
   std::string index;         ///< ahead of the number of the index rotary: "R2" prints C=R2+12.5
   /// The words of the index rotary count from the angle of the tooth, ahead of it, and from the machine's zero, behind
   /// the operation: they are then those of tooth 0. Empty: `index` stands in every word.

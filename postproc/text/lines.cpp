@@ -80,6 +80,8 @@ NcLines::Values program_values(const joints::AxisProgram& program, const NcDiale
   values["free"] = unsigned_value(kFreeFeed, 0);
   values["teeth"] = std::to_string(program.teeth);
   values["stride"] = std::to_string(program.tooth_stride);
+  values["counters"] =
+      program.tooth_stride == 1 ? dialect.loop.place : fmt::format("{},{}", dialect.loop.place, dialect.loop.tooth);
   values["tooth"] = program.tooth_stride == 1 ? dialect.loop.place : dialect.loop.tooth;
   values["sign"] = program.index_sign < 0 ? "0-" : "";
   const bool rolls_back = program.index_axis >= 0 && program.rollover[static_cast<std::size_t>(program.index_axis)] &&

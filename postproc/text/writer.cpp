@@ -49,6 +49,7 @@ class Writer {
     }
     values_ = program_values(program_, dialect_, header_);
     values_["top"] = linear(program_.retract_z_mm);
+    if (program_.loop) fill(dialect_.loop.define);
     blank();
     fill(dialect_.start);
     print(offset_check_lines(dialect_, program_.work_offset, program_.letters));

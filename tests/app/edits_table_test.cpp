@@ -261,8 +261,8 @@ void edit_links(const Editable& p, Rows& out) {
     auto minus = replaced(all, "Q2 = 0-Q1", "Q2 = Q1");
     out.back().second = minus ? minus : replaced(all, "Q2 = Q1", "Q2 = 0-Q1");
   } else if (siemens) {
-    auto minus = replaced(all, "R2=0-R1", "R2=R1");
-    out.back().second = minus ? minus : replaced(all, "R2=R1", "R2=0-R1");
+    auto minus = replaced(all, "R2=0-COUNT", "R2=COUNT");
+    out.back().second = minus ? minus : replaced(all, "R2=COUNT", "R2=0-COUNT");
   } else if (control == "linuxcnc") {
     auto minus = replaced(all, "(G52 C\\[)0-#1", "$1#1");
     out.back().second = minus ? minus : replaced(all, "(G52 C\\[)#1", "$010-#1");
@@ -364,11 +364,11 @@ void edit_teeth(const Editable& p, Rows& out) {
     lines.erase(lines.begin() + std::ptrdiff_t(first), lines.begin() + std::ptrdiff_t(last));
     return lines;
   };
-  Edited loop = replaced(all, "LT 60\\]|LT \\+60 |R1=0 TO 59", "");
+  Edited loop = replaced(all, "LT 60\\]|LT \\+60 |COUNT=0 TO 59", "");
   if (loop) {
     loop = replaced(all, "LT 60\\]", "LT 59]");
     if (!loop) loop = replaced(all, "LT \\+60 ", "LT +59 ");
-    if (!loop) loop = replaced(all, "R1=0 TO 59", "R1=0 TO 58");
+    if (!loop) loop = replaced(all, "COUNT=0 TO 59", "COUNT=0 TO 58");
     out.emplace_back("a tooth left out", loop);
   } else {
     out.emplace_back("a tooth left out", at(30) ? Edited(without(*at(30), *at(31))) : Edited());

@@ -135,7 +135,7 @@ Language siemens() {
              {"ROT Z=R3", "frame", "turned"},
              {R"(CYCLE832\([0-9.]+,_(ORI_)?FINISH,[0-9.]+\))", "smoothing", "on"},
              {R"(CYCLE832\(\))", "smoothing", "off"},
-             {R"(R\d=.*)", "-", ""},
+             {R"((R\d|TOOTH)=.*|DEF INT COUNT(,TOOTH)?)", "-", ""},
              {R"(FOR .*|ENDFOR)", "-", ""},
              {R"re(MSG\(("[^"]*")?\))re", "-", ""},
              {R"re(T="T\d+")re", "-", ""},

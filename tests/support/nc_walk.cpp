@@ -14,7 +14,7 @@ namespace {
 
 using Variables = std::map<std::string, double>;
 
-/// Sums and products with brackets, MOD, ABS, TRUNC, INT and variables #1, R1, Q1.
+/// Sums and products with brackets, MOD, ABS, TRUNC, INT and variables #1, R1, Q1, COUNT, TOOTH.
 class Sum {
  public:
   Sum(const std::string& text, const Variables& variables) : s_(text), variables_(variables) {}
@@ -64,6 +64,8 @@ class Sum {
     if (take("ABS")) return std::abs(factor());
     if (take("TRUNC") || take("INT")) return std::trunc(factor());
     if (take("(") || take("[")) return bracket();
+    for (const char* name : {"COUNT", "TOOTH"})
+      if (take(name)) return variables_.at(name);
     std::size_t end = skip();
     const bool variable = end < s_.size() && std::string("#RQ").find(s_[end]) != std::string::npos;
     if (variable) ++end;
@@ -352,8 +354,9 @@ class SiemensWalker : public Walker {
   bool execute(const std::string& numbered) override {
     static const std::regex number_of_block("^N\\d+ "), message(R"x(MSG\(("[^"]*")?\))x");
     const std::string code = std::regex_replace(numbered, number_of_block, "", std::regex_constants::format_first_only);
-    if (matches(code, message)) return true;
-    static const std::regex loop(R"((?:FOR) (R\d+)=(.*) TO (.*))"), assign(R"((R\d+)=(.*))"), tool("T=\"T(\\d+)\""),
+    if (matches(code, message) || code.starts_with("DEF INT ")) return true;
+    static const std::regex loop(R"((?:FOR) (R\d+|COUNT)=(.*) TO (.*))"), assign(R"((R\d+|TOOTH)=(.*))"),
+        tool("T=\"T(\\d+)\""),
         path(R"x(FGROUP\(.*\)|FGREF\[[ABC]\]=\S+|WORKPIECE\(,"",,"(?:PIPE|CYLINDER)"(?:,[-0-9.]+)+\))x"),
         turn(R"(ROT Z=(.*))"), zero(R"(TRANS ([ABC])=(.*))"), measures(R"(TOOL_CHECK\([-0-9.,]+\))");
     if (matches(code, measures)) return measured();

@@ -4,9 +4,9 @@
 // ahead of and behind a corner within which the axes may leave the path; where cuts turn a rotary the text names the
 // axes whose travel is the way, and the compressor stays off. Where the proof leaves room CYCLE832 takes its place,
 // with its compressor: its tolerances bound the tip, and with TRAORI the rotaries. The teeth run in a FOR loop of the
-// control; with TRAORI the programmable frame ROT turns with them. MOD is for whole variables only there, so that the
-// remainder of the spread order is made with TRUNC, half a unit away from where it could fall on the wrong side.
-// ORIAXES: the rotaries are linear between the blocks, also where a block carries the tool vector A3 B3 C3.
+// control, counted by variables of DEF INT; with TRAORI the programmable frame ROT turns with them. The remainder of
+// the spread order is made with TRUNC, half a unit away from where it could fall on the wrong side. ORIAXES: the
+// rotaries are linear between the blocks, also where a block carries the tool vector A3 B3 C3.
 #include "postproc/controls/control.h"
 #include "postproc/controls/siemens/lines.h"
 #include "postproc/controls/siemens/siemens_reader.h"
@@ -32,10 +32,11 @@ text::NcPlanes planes() {
 
 void add_loop(text::NcDialect& d) {
   d.loop.form = text::NcLoop::Form::in_line;
-  d.loop.before = {"{first_tooth}", "FOR R1={first} TO {last}", "{pick}", "R2={turns}*360/{teeth}", "{zero_on}"};
-  d.loop.pick = {"R4=R1*{stride}-{teeth}*TRUNC((R1*{stride}+0.5)/{teeth})"};
-  d.loop.place = "R1";
-  d.loop.tooth = "R4";
+  d.loop.before = {"{first_tooth}", "FOR COUNT={first} TO {last}", "{pick}", "R2={turns}*360/{teeth}", "{zero_on}"};
+  d.loop.pick = {"TOOTH=COUNT*{stride}-{teeth}*TRUNC((COUNT*{stride}+0.5)/{teeth})"};
+  d.loop.place = "COUNT";
+  d.loop.tooth = "TOOTH";
+  d.loop.define = {"DEF INT {counters}"};
   d.loop.after = {"ENDFOR", "{zero_off}"};
   d.loop.index = "R2";
   d.rollover.way = text::NcRollover::Way::shortest;

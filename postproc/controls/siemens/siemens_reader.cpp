@@ -1,5 +1,5 @@
 // Executes the subset of Siemens 840D text that a gear program needs: G words, TRAORI with rotary words or A3 B3 C3,
-// ROT about Z, R parameters, FOR loops. Everything else is refused where it stands.
+// ROT about Z, R parameters and variables of DEF INT, FOR loops. Everything else is refused where it stands.
 #include "postproc/controls/siemens/siemens_reader.h"
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include "geometry/base/angle.h"
 #include "postproc/controls/siemens/lines.h"
 #include "postproc/controls/siemens/path_group.h"
+#include "postproc/controls/siemens/variables.h"
 #include "postproc/readback/execution.h"
 #include "postproc/readback/scanner.h"
 #include "postproc/readback/turns.h"
@@ -58,7 +59,7 @@ class Siemens {
   using Problem = std::optional<Diagnostic>;
   struct Loop {
     std::size_t head = 0;
-    int parameter = 0;
+    int variable = 0;
     double last = 0;
   };
   /// What one line asks for.
@@ -116,26 +117,19 @@ class Siemens {
     if (!std::isfinite(*v) || std::abs(*v) > 1e9) return here(column, "value is not a number below 1e9");
     return v;
   }
-  std::optional<int> parameter_number(readback::NcScanner& s) const {
-    if (s.at() != 'R' || !readback::NcScanner::is_digit(s.ahead())) return std::nullopt;
-    int n = 0;
-    const std::string_view rest = s.rest().substr(1);
-    const auto r = std::from_chars(rest.data(), rest.data() + rest.size(), n);
-    if (r.ec != std::errc{} || n > 999) return std::nullopt;
-    s.advance(1 + static_cast<std::size_t>(r.ptr - rest.data()));
-    return n;
-  }
   const double* parameter(readback::NcScanner& s) const {
-    const auto n = parameter_number(s);
-    if (!n) return nullptr;
-    const auto found = parameters_.find(*n);
-    return found == parameters_.end() ? nullptr : &found->second;
+    const auto n = variables_.take(s);
+    return n ? variables_.value(*n) : nullptr;
+  }
+  Problem set(int column, int variable, double value) {
+    std::string bad = variables_.set(variable, value);
+    return bad.empty() ? Problem() : here(column, std::move(bad));
   }
 
   Problem loop_head(readback::NcScanner& s) {
     const int column = s.column();
-    const auto n = parameter_number(s);
-    if (!n || !s.take("=")) return here(column, "FOR needs an R parameter and its first value");
+    const auto n = variables_.take(s);
+    if (!n || !s.take("=")) return here(column, "FOR needs an R parameter or a variable, and its first value");
     const auto first = expression(s);
     if (!first) return first.error();
     s.skip_blanks();
@@ -147,17 +141,16 @@ class Siemens {
       pc_ = ends_.at(line_) + 1;
       return std::nullopt;
     }
-    parameters_[*n] = *first;
     loops_.push_back({line_, *n, *last});
-    return std::nullopt;
+    return set(column, *n, *first);
   }
   Problem loop_end(readback::NcScanner& s) {
     if (!s.done()) return here(s.column(), "words behind ENDFOR");
     if (loops_.empty() || ends_.at(loops_.back().head) != line_) return here(1, "ENDFOR of a loop that is not running");
     Loop& l = loops_.back();
-    double& value = parameters_[l.parameter];
-    value += 1;
-    if (value > l.last) {
+    const double next = *variables_.value(l.variable) + 1;
+    if (auto bad = set(1, l.variable, next)) return bad;
+    if (next > l.last) {
       loops_.pop_back();
       return std::nullopt;
     }
@@ -232,21 +225,31 @@ class Siemens {
   }
   /// What is no block of words: a loop, the contour cycle, an assignment. Nothing: it is one.
   std::optional<Problem> statement(readback::NcScanner& s, bool skipped) {
-    const bool assigns = s.at() == 'R' && readback::NcScanner::is_digit(s.ahead());
+    const bool assigns = variables_.stands(s);
     const bool words = !assigns && !s.rest().starts_with("FOR ") && !s.rest().starts_with("ENDFOR") &&
-                       !s.rest().starts_with("CYCLE832(");
-    if (words) return std::nullopt;
+                       !s.rest().starts_with("CYCLE832(") && !s.rest().starts_with("DEF ");
+    if (words) return begun_ = true, std::nullopt;
     if (skipped) return skippable({}, 0);
+    if (s.take("DEF ")) return definition(s);
+    begun_ = true;
     if (s.take("FOR ")) return loop_head(s);
     if (s.take("ENDFOR")) return loop_end(s);
     if (s.take("CYCLE832(")) return contour_cycle(s);
-    const auto n = parameter_number(s);
-    if (!n || !s.take("=")) return here(1, "an R parameter must be set with =");
+    const int column = s.column();
+    const auto n = variables_.take(s);
+    if (!n || !s.take("=")) return here(1, "an R parameter or a variable must be set with =");
     const auto v = expression(s);
     if (!v) return v.error();
     if (!s.done()) return here(s.column(), "words behind an assignment");
-    parameters_[*n] = *v;
-    return Problem();
+    return set(column, *n, *v);
+  }
+  /// DEF INT and names, ahead of every other block.
+  Problem definition(readback::NcScanner& s) {
+    const int column = s.column();
+    if (!s.take("INT ")) return here(column, "DEF is read with INT alone");
+    if (begun_) return here(1, "DEF behind another block: variables are defined ahead of all of them");
+    std::string bad = variables_.define(s);
+    return bad.empty() ? Problem() : here(s.column(), std::move(bad));
   }
   /// CYCLE832(tolerance,_FINISH,1) and CYCLE832(tolerance,_ORI_FINISH,degrees), _ROUGH and _SEMIFIN alike; CYCLE832()
   /// ends it, and how far corners are left behind it must be said.
@@ -736,13 +739,13 @@ class Siemens {
   readback::NcExecution execution_;
   std::unordered_map<std::size_t, std::size_t> ends_;  // FOR -> ENDFOR
   readback::LoopTurns turns_;
-  std::unordered_map<int, double> parameters_;
+  SiemensVariables variables_;
   std::vector<Loop> loops_;
   std::size_t pc_ = 0, line_ = 0;
   NcPathGroup path_;
   int motion_ = -1, tool_ = -1;
   tool_check::Unsaid unsaid_;
-  bool ended_ = false;
+  bool ended_ = false, begun_ = false;
   bool zero_said_ = true;                        // since TRAORI or TRAFOOF, where it was moved
   bool corners_said_ = false;                    // since the program began, a tool was checked, CYCLE832() was left
   bool frame_said_ = false, axes_said_ = false;  // ORIWKS, ORIAXES, since TRAORI

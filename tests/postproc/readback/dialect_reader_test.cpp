@@ -63,6 +63,27 @@ TEST(SiemensReader, RefusalsNameLineAndColumn) {
     EXPECT_NE(error(text).find(expected), std::string::npos) << text << " gave " << error(text);
 }
 
+TEST(SiemensReader, WholeVariablesAreDefinedAheadOfAll) {
+  const auto said = [](const std::string& text) { return refusal("siemens", text + "M30\n"); };
+  EXPECT_EQ(said("; a comment\nN10 def int count , TOOTH\nFOR COUNT=0 TO 4\nTOOTH=COUNT*2-5*TRUNC((COUNT*2+0.5)/5)\n"
+                 "R2=TOOTH*360/7\nENDFOR\n"),
+            "none");
+  const std::pair<const char*, const char*> cases[] = {
+      {"FOR COUNT=0 TO 4\nENDFOR\n", "p:1:5: error: FOR needs an R parameter or a variable"},
+      {"G90\nDEF INT COUNT\n", "p:2:1: error: DEF behind another block"},
+      {"R1=2\nDEF INT COUNT\n", "p:2:1: error: DEF behind another block"},
+      {"DEF REAL TURN\n", "p:1:5: error: DEF is read with INT alone"},
+      {"DEF INT COUNT,COUNT\n", "variable COUNT is defined twice"},
+      {"DEF INT R7\n", "names of 2 to 31 characters that begin with two letters"},
+      {"DEF INT COUNT=3\n", "words behind the names of DEF INT"},
+      {"DEF INT TOOTH\nTOOTH=7/2\n", "p:2:1: error: TOOTH is INT and takes whole numbers alone"},
+      {"DEF INT TOOTH\nR1=TOOTH\n", "p:2:4: error: a parameter that was never set"},
+      {"DEF INT TOOTH\nTOOTHS=1\n", "p:2:1: error: TOOTHS is not in the subset"},
+      {"/DEF INT TOOTH\n", "a block that may be skipped"}};
+  for (const auto& [text, expected] : cases)
+    EXPECT_NE(said(text).find(expected), std::string::npos) << text << " gave " << said(text);
+}
+
 TEST(HeidenhainReader, RefusalsNameLineAndColumn) {
   const std::string lines =
       "BEGIN PGM P MM\n; OP 0 finishing\nCYCL DEF 247 DATUM SETTING Q339=+1\nL Z+500 R0 FMAX M91\nTOOL CALL 1 Z "
