@@ -13,9 +13,9 @@ namespace {
 
 std::vector<std::string> run_outputs() {
   std::vector<std::string> all = {
-      "program.",   "program_#.",   "cl.csv",         "report.json",     "report.html",      "setup.html",
-      "gear.stl",   "tooth.vtp",    "inspection.csv", "inspection.dmi",  "limits.json",      "limits.html",
-      "limits.svg", "limits_0.svg", "limits_1.svg",   "correction.json", "program_tools.tbl"};
+      "program.",   "program_#.",   "cl.csv",         "report.json",     "report.html",       "setup.html",
+      "gear.stl",   "tooth.vtp",    "inspection.csv", "inspection.dmi",  "limits.json",       "limits.html",
+      "limits.svg", "limits_0.svg", "limits_1.svg",   "correction.json", "program_tools.tbl", "data_sheet.html"};
   all.insert(all.end(), cad::file_names().begin(), cad::file_names().end());
   return all;
 }

@@ -14,8 +14,9 @@ namespace toothpath::commands {
 
 const std::vector<std::string>& surface_outputs() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all = {"limits.json",    "limits.html",    "limits.svg", "limits_0.svg", "limits_1.svg",
-                                    "inspection.csv", "inspection.dmi", "gear.stl",   "tooth.vtp",    "report.json"};
+    std::vector<std::string> all = {"limits.json",  "limits.html",    "limits.svg",     "limits_0.svg",
+                                    "limits_1.svg", "inspection.csv", "inspection.dmi", "gear.stl",
+                                    "tooth.vtp",    "report.json",    "data_sheet.html"};
     all.insert(all.end(), cad::file_names().begin(), cad::file_names().end());
     return all;
   }();

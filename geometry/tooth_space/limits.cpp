@@ -5,6 +5,7 @@
 
 #include "geometry/base/angle.h"
 #include "geometry/base/followed.h"
+#include "geometry/tooth_space/tooth_size.h"
 
 namespace toothpath::tooth_space {
 namespace {
@@ -121,23 +122,11 @@ double top_land_mm(const ToothSpace& space, double s) {
 }
 
 std::optional<PatchPoint> middle_of_flank(const ToothSpace& space, int side, double s) {
-  const Piece piece = flank_of(side);
-  const auto tip = tip_u(space, side, s);
-  const Borders b = space.borders(piece);
-  const double fillet = std::isfinite(b.from) ? b.from : b.to;
-  const auto low = place_at(space, piece, fillet, s);
-  if (!tip || !low) return {};
-  const Chart& chart = space.outline().chart;
-  const double wanted = 0.5 * (chart.up(low->p) + space.tip(s));
-  double below = fillet, above = *tip;
-  std::optional<PatchPoint> q;
-  for (int k = 0; k < kHalvings; ++k) {
-    const double u = 0.5 * (below + above);
-    q = place_at(space, piece, u, s);
-    if (!q) return {};
-    (chart.up(q->p) < wanted ? below : above) = u;
-  }
-  return q;
+  const Borders b = space.borders(flank_of(side));
+  const auto low = place_at(space, flank_of(side), std::isfinite(b.from) ? b.from : b.to, s);
+  if (!low) return {};
+  const auto middle = flank_at(space, side, s, 0.5 * (space.outline().chart.up(low->p) + space.tip(s)));
+  return middle ? std::optional(middle->at) : std::nullopt;
 }
 
 double fillet_radius_min_mm(const ToothSpace& space, double s, int side) {

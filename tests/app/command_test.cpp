@@ -18,8 +18,9 @@
 namespace toothpath::test {
 namespace {
 
-const std::vector<std::string> kSurfaceFiles = {"gear.stl",    "inspection.csv", "inspection.dmi", "limits.html",
-                                                "limits.json", "limits.svg",     "report.json",    "tooth.vtp"};
+const std::vector<std::string> kSurfaceFiles = {"data_sheet.html", "gear.stl",    "inspection.csv",
+                                                "inspection.dmi",  "limits.html", "limits.json",
+                                                "limits.svg",      "report.json", "tooth.vtp"};
 
 TEST(CommandLine, UsageErrorsAreTwo) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{},

@@ -59,6 +59,39 @@ sheet::PartOutline outline(const bevel_gear::BevelGear& g) {
           body.z_max_mm, gear_words(p)};
 }
 
+sheet::DataGroup gear_data(const bevel_gear::BevelGear& g) {
+  using sheet::data_angle, sheet::data_length, sheet::data_number;
+  const auto& p = g.parameters();
+  const double h_a = p.addendum_mm;
+  const auto tip_r = [&](double R) { return R * g.sin_delta() + h_a * g.cos_delta(); };
+  const auto tip_z = [&](double R) { return R * g.cos_delta() - h_a * g.sin_delta(); };
+  sheet::DataGroup out{g.herringbone() ? "Equal-base-circle bevel gear, herringbone" : "Equal-base-circle bevel gear",
+                       {data_number("z", "number of teeth", p.teeth),
+                        data_length("m_te", "outer transverse module", p.outer_transverse_module_mm),
+                        data_angle("alpha_n", "normal pressure angle", p.pressure_angle_rad),
+                        {"", g.herringbone() ? "hand of the inner half" : "hand", p.hand > 0 ? "right" : "left"},
+                        data_angle("beta_e", "spiral angle at the large end", p.outer_spiral_angle_rad),
+                        data_angle("delta", "pitch angle, face and root cones parallel to it", g.delta()),
+                        data_length("R_e", "outer cone distance", g.R_e()),
+                        data_length("R_m", "mean cone distance", g.R_m()),
+                        data_length("R_i", "inner cone distance", g.R_i()),
+                        data_length("b", "face width", p.face_width_mm),
+                        data_length("m_mn", "mean normal module", g.normal_module(g.R_m())),
+                        data_length("d_e", "outer pitch diameter", 2 * g.R_e() * g.sin_delta()),
+                        data_length("d_ae", "outside diameter", 2 * tip_r(g.R_e())),
+                        data_length("d_ai", "outside diameter at the small end", 2 * tip_r(g.R_i())),
+                        data_length("t_xo", "pitch apex to crown, along the axis", tip_z(g.R_e())),
+                        data_length("h_a", "addendum", h_a),
+                        data_length("h_f", "dedendum", p.dedendum_mm),
+                        data_length("h", "whole depth", h_a + p.dedendum_mm),
+                        data_length("j_t", "backlash of the pair on the outer pitch circle", p.backlash_mm)}};
+  if (p.mate_teeth > 0) {
+    out.rows.push_back(data_number("z_2", "teeth of the mate", p.mate_teeth));
+    out.rows.push_back(data_angle("Sigma", "shaft angle", p.shaft_angle_rad));
+  }
+  return out;
+}
+
 std::string limits_json(const bevel_gear::BevelGear& g) {
   const bevel_gear::BevelLimits& l = g.limits();
   nlohmann::ordered_json j = {{"schema", 1},

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/report/sheet/data_sheet.h"
 #include "app/report/sheet/setup_sheet.h"
 #include "cam/tool/assembly.h"
 #include "geometry/bevel_gear/gear.h"
@@ -21,6 +22,9 @@ namespace toothpath::bevel {
                                               const machines::Machine& machine);
 /// The same for the sketch of the set-up sheet.
 [[nodiscard]] sheet::PartOutline outline(const bevel_gear::BevelGear& gear);
+
+/// The table of the drawing, for the data sheet.
+[[nodiscard]] sheet::DataGroup gear_data(const bevel_gear::BevelGear& gear);
 
 /// limits.json: top_land, space_width, module_limit, tip_flat, corner_fillet_reach [mm], cutter_line_angle [deg], and
 /// more.

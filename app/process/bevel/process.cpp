@@ -228,6 +228,11 @@ class BevelProcess : public milled::ToothedProcess {
     out.subtitle = fmt::format("equal-base-circle bevel gear z {}, outer module {:g} mm, {}, pitch angle {:.4f} deg",
                                p.teeth, p.outer_transverse_module_mm,
                                gear.herringbone() ? "herringbone" : "single hand", degrees(gear.delta()));
+    out.data = {gear_data(gear)};
+    for (int half = 0; half < part->zones(); ++half) {
+      const auto& ring = part->space(half).outline();
+      out.measured_at.push_back({half, 0.5 * (ring.s_from + ring.s_to), 0, "pitch cone, middle of the half"});
+    }
     out.limits_json = [&gear] { return bevel::limits_json(gear); };  // the gear lives as long as the part
     return out;
   }

@@ -14,6 +14,7 @@
 #include "app/report/svg/html_text.h"
 #include "geometry/face_gear/part.h"
 #include "geometry/inspection/dmis.h"
+#include "geometry/tooth_space/limits.h"
 
 namespace toothpath::face {
 namespace {
@@ -29,6 +30,47 @@ std::string gear_words(const face_gear::FaceGearParameters& p) {
         "; radius {:g} to {:g} mm, {}", zone.inner_radius_mm, zone.outer_radius_mm,
         zone.helix_angle_rad == 0 ? "spur" : fmt::format("shaper helix {:g} deg", degrees(zone.helix_angle_rad)));
   return text;
+}
+
+std::vector<sheet::DataGroup> gear_data(const face_gear::FaceGear& gear) {
+  const face_gear::FaceGearParameters& p = gear.parameters();
+  const bool normal = p.module_plane == face_gear::ModulePlane::normal;
+  sheet::DataGroup whole{
+      "Face gear",
+      {sheet::data_number("z_2", "number of teeth", p.teeth),
+       sheet::data_number("z_s", "teeth of the shaper", p.shaper_teeth),
+       sheet::data_length(normal ? "m_n" : "m_t", normal ? "module, normal" : "module, transverse", p.module_mm),
+       sheet::data_angle(normal ? "alpha_n" : "alpha_t", "pressure angle", p.pressure_angle_rad),
+       sheet::data_angle("Sigma", "shaft angle", p.shaft_angle_rad),
+       sheet::data_length("a", "offset of the axes", p.offset_mm),
+       sheet::data_number("h_a*", "addendum, in modules", p.addendum_coefficient),
+       sheet::data_number("c*", "clearance, in modules", p.clearance_coefficient),
+       sheet::data_length("rho_s", "tip radius of the shaper", p.shaper_tip_radius_mm),
+       sheet::data_length("j_n", "normal backlash", p.backlash_mm),
+       sheet::data_length("d_o", "outside diameter of the teeth", 2 * gear.outer_radius()),
+       sheet::data_length("d_i", "inside diameter of the teeth", 2 * gear.inner_radius())}};
+  if (p.mate_teeth > 0) whole.rows.push_back(sheet::data_number("z_1", "teeth of the pinion", p.mate_teeth));
+  std::vector<sheet::DataGroup> out{std::move(whole)};
+  const auto part = face_gear::part_of(gear);
+  for (int zone = 0; zone < part->zones(); ++zone) {
+    const auto& z = p.zones[std::size_t(zone)];
+    const auto& space = part->space(zone);
+    const auto root =
+        tooth_space::place_at(space, tooth_space::Piece::root, 0.5, 0.5 * (z.inner_radius_mm + z.outer_radius_mm));
+    sheet::DataGroup ring{
+        part->zones() > 1 ? fmt::format("Zone {}", zone) : std::string("Ring of teeth"),
+        {sheet::data_length("R_i", "inner radius", z.inner_radius_mm),
+         sheet::data_length("R_o", "outer radius", z.outer_radius_mm),
+         sheet::data_length("b", "face width", z.outer_radius_mm - z.inner_radius_mm),
+         sheet::data_helix("beta", "helix angle of the shaper", z.helix_angle_rad),
+         sheet::data_length("Z_a", "height of the tips along the gear axis, inner end", space.tip(z.inner_radius_mm)),
+         sheet::data_length("Z_a", "the same, outer end", space.tip(z.outer_radius_mm))}};
+    if (root)
+      ring.rows.push_back(sheet::data_length("h", "tooth depth, middle of the face",
+                                             space.tip(0.5 * (z.inner_radius_mm + z.outer_radius_mm)) - root->p.z()));
+    out.push_back(std::move(ring));
+  }
+  return out;
 }
 
 using Owned = std::shared_ptr<const face_gear::FaceGear>;
@@ -50,6 +92,7 @@ milled::ToothedGear toothed(const Owned& owned) {
   out.outline = {gear.inner_radius(), gear.outer_radius(),          gear.blank_top(),
                  gear.lowest_root(),  face_gear::underside_z(gear), gear_words(p)};
   out.subtitle = fmt::format("face gear {}/{}, module {} mm", p.shaper_teeth, p.teeth, svg::short_number(p.module_mm));
+  out.data = gear_data(gear);
   out.limits_json = [owned] { return limits::limits_json(*owned); };
   return out;
 }
@@ -84,6 +127,7 @@ class FaceProcess final : public milled::ToothedProcess {
                                    std::vector<std::string>& files) const override {
     process::GearFiles to(output, files);
     if (const auto s = to.write("limits.json", limits_json()); !s) return s;
+    if (const auto s = to.write("data_sheet.html", sheet::data_sheet_html(data_sheet())); !s) return s;
     if (const auto s = to.write("limits.html", limits::limits_page(*gear_, job().name, assumed)); !s) return s;
     const auto charts = limit_charts();  // two a zone
     for (std::size_t zone = 0; 2 * zone < charts.size(); ++zone)

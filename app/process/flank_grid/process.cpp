@@ -21,6 +21,26 @@ std::string gear_words(const FlankGridGear& gear) {
                      ring.along, from, to);
 }
 
+sheet::DataGroup gear_data(const FlankGridGear& gear) {
+  const FlankGridParameters& p = gear.parameters();
+  const auto& ring = gear.space().outline();
+  const double tip_from = gear.space().tip(ring.s_from), tip_to = gear.space().tip(ring.s_to);
+  return {"Gear by points",
+          {sheet::data_number("z", "number of teeth", p.teeth),
+           sheet::data_length("m_t", "transverse module half way up the teeth, larger end", gear.module_mm()),
+           {"", "points of the flanks",
+            fmt::format("{} x {} and {} x {}", p.plus.rows, p.plus.columns, p.minus.rows, p.minus.columns)},
+           sheet::data_length("rho_f", "radius of the ball in the fillets", p.fillet_radius_mm),
+           sheet::data_length("b", "length of the teeth", ring.s_to - ring.s_from),
+           sheet::data_length("d_a", fmt::format("tip diameter, {} end", ring.from),
+                              2 * ring.chart.r(ring.s_from, tip_from)),
+           sheet::data_length("d_a", fmt::format("tip diameter, {} end", ring.to), 2 * ring.chart.r(ring.s_to, tip_to)),
+           sheet::data_length("d_f", fmt::format("root diameter, {} end", ring.from),
+                              2 * ring.chart.r(ring.s_from, gear.root(ring.s_from))),
+           sheet::data_length("d_f", fmt::format("root diameter, {} end", ring.to),
+                              2 * ring.chart.r(ring.s_to, gear.root(ring.s_to)))}};
+}
+
 milled::ToothedGear toothed(FlankGridGear made) {
   const auto owner = std::make_shared<const FlankGridGear>(std::move(made));
   const FlankGridGear& gear = *owner;
@@ -58,6 +78,7 @@ milled::ToothedGear toothed(FlankGridGear made) {
   else if (chart.cosine > 0) out.outline = {inner, outer, z_high, root_low, low, gear_words(gear)};
   else out.outline = {inner, outer, z_low, root_high, high, gear_words(gear)};
   out.subtitle = fmt::format("gear by points z {}, {} x {} points a flank", p.teeth, p.plus.rows, p.plus.columns);
+  out.data = {gear_data(gear)};
   out.limits_json = [owner] { return limits_json(*owner); };
   out.limit_charts = {limit_chart(gear)};
   out.ledger = point_ledger(gear);

@@ -16,6 +16,10 @@ namespace toothpath::milled {
                                      tooth_space::ToothedSolid solid, const tooth_space::BevelBody& body,
                                      const std::string& words);
 
+/// Blank and pitch cone as ISO 23509 names them, from the space and the cone distances of its ends.
+[[nodiscard]] std::vector<sheet::DataRow> bevel_blank_data(const tooth_space::ToothSpace& space, double pitch_angle_rad,
+                                                           double root_angle_rad, double root_depth_outer_mm);
+
 /// "outside_diameter" and "apex_to_crown", of the large end.
 void add_blank(nlohmann::ordered_json& limits, const tooth_space::ToothSpace& space);
 

@@ -185,6 +185,7 @@ Status ToothedProcess::write_files(app::OutputDir& output, const std::vector<pro
                                    std::vector<std::string>& files) const {
   process::GearFiles to(output, files);
   if (const auto s = to.write("limits.json", limits_json()); !s) return s;
+  if (const auto s = to.write("data_sheet.html", sheet::data_sheet_html(data_sheet())); !s) return s;
   const auto& charts = gear_.limit_charts;
   for (std::size_t zone = 0; zone < charts.size(); ++zone)
     if (const auto s = to.write(charts.size() == 1 ? "limits.svg" : fmt::format("limits_{}.svg", zone),
@@ -193,6 +194,27 @@ Status ToothedProcess::write_files(app::OutputDir& output, const std::vector<pro
       return s;
   return write_bodies(
       to, gear_.solid, job_.name, [&] { return inspected(); }, surface, clock);
+}
+sheet::DataSheet ToothedProcess::data_sheet() const {
+  sheet::DataSheet out{job_.name, job_.file, gear_.outline.words, gear_.data};
+  std::vector<ThicknessPlace> places = gear_.measured_at;
+  if (places.empty())
+    for (const auto& ring : gear_.solid.rings) places.push_back(middle_of_zone(gear_.solid, ring.zone));
+  for (sheet::DataGroup& group : tooth_data(gear_.solid, places)) out.groups.push_back(std::move(group));
+  if (job_.verify.form_tolerance_mm)
+    out.groups.push_back({"Quality",
+                          {{"f_f_alpha",
+                            job_.verify.iso_class ? fmt::format("form tolerance of the flanks, ISO 1328-1 class {}",
+                                                                *job_.verify.iso_class)
+                                                  : std::string("form tolerance of the flanks"),
+                            fmt::format("{:.2f} um", 1000 * *job_.verify.form_tolerance_mm)}}});
+  if (gear_.facts.modified)
+    out.notes.push_back(fmt::format("The flanks are modified ({}); the measures of the tooth contain that.",
+                                    gear_.facts.modified->list.size()));
+  out.notes.push_back(
+      "Measures of the tooth are those of the exact flanks of the drawing, without a tolerance of thickness but what "
+      "the job states.");
+  return out;
 }
 std::unique_ptr<process::GearMilling> ToothedProcess::milling(const machines::Machine& machine,
                                                               const proof::ProofLimits& limits,

@@ -11,6 +11,7 @@
 #include "app/process/gear_process.h"
 #include "app/process/milled/bodies.h"
 #include "app/process/milled/body.h"
+#include "app/process/milled/tooth_data.h"
 #include "geometry/tooth_space/toothed_part.h"
 #include "geometry/tooth_space/toothed_solid.h"
 
@@ -28,8 +29,10 @@ struct ToothedGear {
   sheet::PartOutline outline;
   std::string subtitle;  ///< of the page, without the machine
   std::function<std::string()> limits_json;
-  std::vector<svg::LineChart> limit_charts;     ///< one a zone
-  std::vector<proof::LedgerEntry> ledger = {};  ///< what this gear type adds to it
+  std::vector<svg::LineChart> limit_charts;      ///< one a zone
+  std::vector<proof::LedgerEntry> ledger = {};   ///< what this gear type adds to it
+  std::vector<sheet::DataGroup> data = {};       ///< of the drawing, for the data sheet
+  std::vector<ThicknessPlace> measured_at = {};  ///< where that states the thickness; empty: the middle of each zone
 };
 
 /// A gear type that has more to say derives from it. The job must outlive it.
@@ -85,6 +88,11 @@ class ToothedProcess : public process::GearProcess {
   }
   [[nodiscard]] const job::Job& job() const { return job_; }
   [[nodiscard]] const ToothedGear& gear() const { return gear_; }
+
+ public:
+  /// data_sheet.html: the table of the drawing, and what is measured on the teeth of the drawing, modifications
+  /// included.
+  [[nodiscard]] sheet::DataSheet data_sheet() const;
 
  private:
   /// Where measured places lie on the flanks.

@@ -1,5 +1,6 @@
 #include "app/process/spiral_bevel/process.h"
 
+#include <cmath>
 #include <utility>
 
 #include "app/process/milled/bevel_gear.h"
@@ -27,6 +28,33 @@ std::string gear_words(const SpiralBevelGear& gear) {
       degrees(0.5 * (gear.spiral_angle(1) + gear.spiral_angle(-1))));
 }
 
+sheet::DataGroup gear_data(const SpiralBevelGear& gear) {
+  const SpiralBevelParameters& p = gear.parameters();
+  const double spiral = 0.5 * (gear.spiral_angle(1) + gear.spiral_angle(-1)),
+               mean_module = gear.body().module_mm * p.mean_cone_distance() / p.outer_cone_distance_mm;
+  sheet::DataGroup out{fmt::format("Spiral bevel gear, ISO 23509, {}", way_of(p)),
+                       {sheet::data_number("z", "number of teeth", p.teeth),
+                        sheet::data_length("m_et", "outer transverse module", gear.body().module_mm),
+                        sheet::data_length("m_mn", "mean normal module", mean_module * std::cos(spiral)),
+                        sheet::data_helix("beta_m", "mean spiral angle", p.hand * spiral),
+                        sheet::data_angle("Sigma", "shaft angle", p.shaft_angle_rad)}};
+  for (const Cut& cut : p.cuts)
+    for (const Cuts side : {Cuts::concave, Cuts::convex})
+      if (cut.makes(side)) {
+        const Blade& blade = cut.blades[side == Cuts::concave ? 0 : 1];
+        const std::string name = side == Cuts::concave ? "concave" : "convex";
+        out.rows.push_back(
+            sheet::data_angle("alpha", "blade angle of the " + name + " flank", blade.pressure_angle_rad));
+        out.rows.push_back(sheet::data_length("r_0", "point radius of its blade", blade.point_radius_mm));
+        out.rows.push_back(sheet::data_length("rho_a0", "edge radius of its blade", blade.edge_radius_mm));
+      }
+  for (auto& row :
+       milled::bevel_blank_data(gear.space(), p.pitch_angle_rad, p.cuts.front().root_angle_rad, -gear.body().root_back))
+    out.rows.push_back(std::move(row));
+  out.rows.push_back(sheet::data_length("e_m", "space width on the mean pitch circle", gear.space_width_mm()));
+  return out;
+}
+
 milled::ToothedGear toothed(SpiralBevelGear made) {
   const auto gear = std::make_shared<const SpiralBevelGear>(std::move(made));
   const SpiralBevelParameters& p = gear->parameters();
@@ -35,6 +63,9 @@ milled::ToothedGear toothed(SpiralBevelGear made) {
   out.subtitle = fmt::format("spiral bevel gear z {}, {} hand, outer module {} mm, {}, pitch angle {:.4f} deg", p.teeth,
                              p.hand > 0 ? "right" : "left", svg::short_number(gear->body().module_mm), way_of(p),
                              degrees(p.pitch_angle_rad));
+  out.data = {gear_data(*gear)};
+  const auto& ring = gear->space().outline();
+  out.measured_at = {{0, 0.5 * (ring.s_from + ring.s_to), 0, "mean pitch circle"}};
   out.limits_json = [gear] { return limits_json(*gear); };
   out.limit_charts = {limit_chart(*gear)};
   return out;

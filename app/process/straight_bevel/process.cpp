@@ -26,6 +26,20 @@ std::string gear_words(const StraightBevelGear& gear) {
       w.R_i, w.R_e);
 }
 
+sheet::DataGroup gear_data(const StraightBevelGear& gear) {
+  const StraightBevelParameters& p = gear.parameters();
+  sheet::DataGroup out{fmt::format("Straight bevel gear, ISO 23509, {}", form_of(p)),
+                       {sheet::data_number("z", "number of teeth", p.teeth),
+                        sheet::data_length("m_et", "outer transverse module", p.outer_transverse_module_mm),
+                        sheet::data_angle("alpha_n", "pressure angle of the crown gear", p.pressure_angle_rad),
+                        sheet::data_number("x_sm", "thickness modification coefficient", p.thickness_shift),
+                        sheet::data_length("j_et", "backlash of the pair on the outer pitch circle", p.backlash_mm),
+                        sheet::data_length("rho_e", "fillet radius of the crown gear, outer end", p.fillet_radius_mm)}};
+  for (auto& row : milled::bevel_blank_data(gear.space(), p.pitch_angle_rad, gear.root_angle(), p.dedendum_mm))
+    out.rows.push_back(std::move(row));
+  return out;
+}
+
 milled::ToothedGear toothed(StraightBevelGear made) {
   const auto gear = std::make_shared<const StraightBevelGear>(std::move(made));
   const StraightBevelParameters& p = gear->parameters();
@@ -34,6 +48,10 @@ milled::ToothedGear toothed(StraightBevelGear made) {
   out.least_land_mm = p.least_land * p.outer_transverse_module_mm;
   out.subtitle = fmt::format("straight bevel gear z {}, outer module {} mm, {}, pitch angle {:.4f} deg", p.teeth,
                              svg::short_number(p.outer_transverse_module_mm), form_of(p), degrees(p.pitch_angle_rad));
+  out.data = {gear_data(*gear)};
+  const auto& ring = gear->space().outline();
+  out.measured_at = {{0, ring.s_from, 0, "outer pitch circle"},
+                     {0, 0.5 * (ring.s_from + ring.s_to), 0, "mean pitch circle"}};
   out.limits_json = [gear] { return limits_json(*gear); };
   out.limit_charts = {limit_chart(*gear)};
   return out;
