@@ -159,6 +159,7 @@ OutputDir::~OutputDir() {
 /// A hidden file, locked as long as this run lives: who dies leaves a file without a lock. The file goes with its run,
 /// so a lock counts only while its file stands there.
 Status OutputDir::lock() {
+  const SignalsBlocked blocked;  // until a signal can take the file away
   for (;;) {
     const auto file = folder_.open_file(kLock, O_RDWR | O_CREAT);
     if (!file) return file.error();

@@ -42,7 +42,7 @@ TEST_F(AssumedPivot, EveryPageAndTheProgramCarryTheWarning) {
   EXPECT_NE(run.out.find("assumed             1 value of m.toml, not measured: axes\n"), std::string::npos) << run.out;
   int pages = 0;
   for (const auto& name : names_in(dir / "out")) {
-    if (!name.ends_with(".html")) continue;
+    if (!name.ends_with(".html") || name == "data_sheet.html") continue;  // a drawing of the gear knows no machine
     ++pages;
     const std::string page = file_text(dir / ("out/" + name));
     const bool counts = name == "limits.html";  // no limit of the gear depends on the machine

@@ -190,12 +190,10 @@ TEST(UndercutFold, ThinRingsAreRefusedOnlyWhereThereIsNoTooth) {
   EXPECT_GE(refused, 60);
 }
 
-/// Rings that begin hardly outside their limit: the ball does not come to their inner end, or cuts into the fillet
-/// there.
+/// Rings that begin hardly outside their limit.
 struct CloseRing {
   int shaper_teeth, teeth;
   double module, helix_deg, tip_radius, beyond_limit, width, ball;
-  const char* why;
 };
 face_gear::FaceGearParameters gear_of(const CloseRing& c) {
   face_gear::FaceGearParameters g;
@@ -212,32 +210,50 @@ face_gear::FaceGearParameters gear_of(const CloseRing& c) {
   return g;
 }
 
-// Nothing is planned into the surface there and left to the proof: the refusal tells value and limit, and which ball
-// and which inner radius would do. Those do.
+struct ClosePlan {
+  analytic::GearDistance part;
+  Expected<plan::MillingPlan, ball::PlanRefusal> plan;
+};
+ClosePlan plan_of(const face_gear::FaceGearParameters& parameters, double ball) {
+  const auto tool = test::ball_mill(ball, 5, 0.95 * ball, 14, 10);
+  analytic::GearDistance part(face_gear::part_of(test::made(parameters)), ball::reach_of({tool}));
+  auto plan = plan::plan_milling(part, {tool}, {test::finishing(0, 0.03, 0.002)}, {});
+  return {std::move(part), std::move(plan)};
+}
+
+// Where the ball does not come to the inner end the refusal tells value and limit, and which ball and which inner
+// radius would do. Those do.
 TEST(UndercutFold, CloseToTheLimitARefusalTellsWhatWouldDo) {
-  for (const auto& c : {CloseRing{34, 100, 1.25, 60, 0.304, 0.05, 0.4, 0.519, "mm are missing at its inner end"},
-                        CloseRing{42, 179, 1.447, -60, 0.367, 0.0718, 0.4, 0.476, "into the finished surface"}}) {
-    const auto plan_of = [&](const face_gear::FaceGearParameters& parameters, double ball) {
-      const face_gear::FaceGear gear = test::made(parameters);
-      const auto tool = test::ball_mill(ball, 5, 0.95 * ball, 14, 10);
-      const analytic::GearDistance part(face_gear::part_of(gear), ball::reach_of({tool}));
-      return plan::plan_milling(part, {tool}, {test::finishing(0, 0.03, 0.002)}, {});
-    };
-    auto gear = gear_of(c);
-    const auto refused = plan_of(gear, c.ball);
-    ASSERT_FALSE(refused.has_value());
-    const std::string words = refused.refused()->diagnostic.message;
-    SCOPED_TRACE(words);
-    EXPECT_NE(words.find(c.why), std::string::npos);
-    const double ball = test::number_after(words, "would do, planned as a trial: a diameter of "),
-                 inner = test::number_after(words, "an inner_radius of ");
-    EXPECT_GT(inner, gear.zones.front().inner_radius_mm);
-    if (!std::isnan(ball)) {
-      EXPECT_LT(ball, c.ball);
-      EXPECT_TRUE(plan_of(gear, ball).has_value());
-    }
-    gear.zones.front().inner_radius_mm = inner;
-    EXPECT_TRUE(plan_of(gear, c.ball).has_value());
+  const CloseRing c{34, 100, 1.25, 60, 0.304, 0.05, 0.4, 0.519};
+  auto gear = gear_of(c);
+  const auto refused = plan_of(gear, c.ball).plan;
+  ASSERT_FALSE(refused.has_value());
+  const std::string words = refused.refused()->diagnostic.message;
+  SCOPED_TRACE(words);
+  EXPECT_NE(words.find("mm are missing at its inner end"), std::string::npos);
+  const double ball = test::number_after(words, "would do, planned as a trial: a diameter of "),
+               inner = test::number_after(words, "an inner_radius of ");
+  EXPECT_GT(inner, gear.zones.front().inner_radius_mm);
+  if (!std::isnan(ball)) {
+    EXPECT_LT(ball, c.ball);
+    EXPECT_TRUE(plan_of(gear, ball).plan.has_value());
+  }
+  gear.zones.front().inner_radius_mm = inner;
+  EXPECT_TRUE(plan_of(gear, c.ball).plan.has_value());
+}
+
+// Where it comes there, the ring is planned: beside the undercut the end edge bends quickly, which is no cut.
+TEST(UndercutFold, CloseToTheLimitABallThatComesThereCutsNothing) {
+  for (const double beyond : {0.005, 0.0718}) {
+    const CloseRing c{42, 179, 1.447, -60, 0.367, beyond, 0.4, 0.476};
+    const ClosePlan at = plan_of(gear_of(c), c.ball);
+    ASSERT_TRUE(at.plan.has_value()) << at.plan.refused()->diagnostic.message;
+    double deepest = 0;
+    for (const auto& path : at.plan->paths)
+      for (const auto& record : path.records)
+        deepest =
+            std::max(deepest, 0.5 * c.ball - at.part.nearest(record.tip + 0.5 * c.ball * record.axis, c.ball).distance);
+    EXPECT_LE(deepest, 0.001);
   }
 }
 
