@@ -119,14 +119,13 @@ CommandOutcome run_fit(const FitRequest& request) {
     json["file"] = request.write_file;
     outcome.summary += "  job in " + request.write_file + "\n";
   }
-  outcome.report_json = json_text(json, 2) + "\n";
+  const std::string report = json_text(json, 2) + "\n";
+  outcome.report_json = report;
   outcome.summary += "  files in " + request.out_dir + "\n";
   progress.clear();
-  return process::finished(*output,
-                           {{"fit.json", outcome.report_json},
-                            {"fit.csv", fit::points_csv(told)},
-                            {"fit.html", page::study_page_html(page)}},
-                           std::move(outcome));
+  return process::finished(
+      *output, {{"fit.json", report}, {"fit.csv", fit::points_csv(told)}, {"fit.html", page::study_page_html(page)}},
+      std::move(outcome));
 }
 
 }  // namespace
