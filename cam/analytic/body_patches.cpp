@@ -232,9 +232,10 @@ BodyQuad BodyPatches::end_quad(const Cell& cell, const std::array<Vec2, 4>& at) 
 Vec2 BodyPatches::sides(const Cell& cell, const BodyQuad& q) const {
   const auto& c = q.corner;
   Vec2 out(std::max((c[1] - c[0]).norm(), (c[2] - c[3]).norm()), std::max((c[3] - c[0]).norm(), (c[2] - c[1]).norm()));
-  if (cell.surface.end())
-    out.y() = std::min(out.y(), (q.at[2].y() - q.at[0].y()) * (std::max(chart().up(c[2]), chart().up(c[3])) -
-                                                               std::min(ring_.base_mm, chart().up(c[0]))));
+  if (cell.surface.end()) {  // of the way from the base to the border, of which the upper corners are a share, too
+    const double up = std::max(chart().up(c[2]), chart().up(c[3])) - std::min(ring_.base_mm, chart().up(c[0]));
+    out.y() = std::min(out.y(), (q.at[2].y() - q.at[0].y()) * up / q.at[2].y());
+  }
   return out;
 }
 

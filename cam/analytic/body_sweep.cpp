@@ -41,6 +41,7 @@ namespace {
 constexpr double kWreckDepth = 0.05;    // mm: deeper cuts are followed more coarsely
 constexpr double kSmallestQuad = 1e-5;  // mm: smaller quads are not halved
 constexpr std::size_t kMostPieces = 400000;
+constexpr double kPatience = 2000;  // pieces after which a gap that is too small anyway is followed half as closely
 constexpr int kTeeth = 1 << 20;  // a gear has fewer
 constexpr double kRoundOff = 1 + 1e-9;
 constexpr double kRounding = 1e-9;    // mm: of the bound of a whole cell, with room to spare
@@ -296,7 +297,7 @@ class Sweep {
     gather(near ? near->found().cells : own);
     prove();
     out.pieces = examined_;
-    out.proven_mm = std::max(std::min(o_.enough_mm, proven_), above);
+    out.proven_mm = std::max({std::min(o_.enough_mm, proven_), above, -widest_});  // no place lies deeper in a body
     const Target* best = nullptr;
     for (const auto& t : targets_)
       if (t.found < (best ? best->found : o_.enough_mm)) best = &t;
@@ -355,9 +356,12 @@ class Sweep {
     target.height = height;
   }
 
-  /// How far below a gap that was found the bound of a piece may lie.
+  /// How far below a gap that was found the bound of a piece may lie: the farther the longer it takes, where less was
+  /// found than is asked for.
   [[nodiscard]] double leeway(double gap) const {
-    return gap >= o_.contact_mm ? o_.proof_mm : std::max(0.5 * o_.contact_proof_mm, -0.1 * (gap + kWreckDepth));
+    const double close =
+        gap >= o_.contact_mm ? o_.proof_mm : std::max(0.5 * o_.contact_proof_mm, -0.1 * (gap + kWreckDepth));
+    return best_ < o_.asked_mm ? close * std::exp2(double(examined_) / kPatience) : close;
   }
   /// Is this bound near enough to the least gap found? One that says less than what is asked for, where what was found
   /// is as much, is followed as closely as a contact.
@@ -487,14 +491,14 @@ class Sweep {
       for (std::size_t k = 0; k < s.count(); ++k)
         look(target, patches, s.hull.corner[k / 2], s.x[k], k % 2 == 0 ? s.from : s.to);
       if (best_ < -std::max(0.25, 0.1 * widest_)) {
-        proven_ = -widest_;  // no place lies deeper in a body than its radius
+        proven_ = -INFINITY;
         return;
       }
       const double size = patches.size(target.cell, piece.quad);
       if (near_enough(least + fixed) || least + fixed >= o_.settled_mm ||
           std::max(size, s.moved) < std::max(kSmallestQuad, patches.stays(target.cell, piece.quad)) ||
           ++examined_ > kMostPieces || !std::isfinite(least)) {
-        proven_ = std::min(proven_, std::isfinite(least) ? least : -widest_);
+        proven_ = std::min(proven_, std::isfinite(least) ? least : -INFINITY);
         continue;
       }
       halve(piece, patches, target.cell,

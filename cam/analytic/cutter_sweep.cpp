@@ -113,7 +113,7 @@ CutterFinding CutterSweep::check(const path::ToolMotion& motion, const KnownDept
   else flute(least, ball);
   // A wreck is bounded already; there and above the part nothing was asked of the flute.
   part_bounds_ = {ball, least <= -within_ ? ball : std::max(found_.bound_mm, -flute_leaves_)};
-  found_.bound_mm = std::max(ball, found_.bound_mm);
+  found_.bound_mm = std::max({ball, found_.bound_mm, found_.measured_mm});  // of a wreck less may have been asked
   return found_;
 }
 

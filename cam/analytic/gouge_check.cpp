@@ -110,6 +110,8 @@ class Chunk {
   /// @param known  of the tool's parts, a depth that each cannot exceed; empty: nothing is known
   /// @param proven  takes the depths that are proven now; empty: not asked for
   void check(const path::ToolMotion& m, int tool, std::span<const double> known = {}, std::span<double> proven = {}) {
+    ++out_.motions;
+    if (m.rapid && !rapid_is_clear(m, tools_[std::size_t(tool)])) return;  // refused, whatever it cuts
     if (tool != tool_) take(tool);
     const KnownDepths of_cutter{known, good_};
     const auto cut = ball_ ? ball_->check(m, of_cutter) : profile_->check(m, of_cutter);
@@ -129,21 +131,6 @@ class Chunk {
       const double gap = clearance(bodies_[k], m, n < known.size() ? -known[n] : -INFINITY);
       if (!proven.empty()) proven[n] = -gap;
     }
-    if (m.rapid) {
-      const proof::RapidObstacle blank = obstacle_of(part_.part(), o_.rapid_height_mm);
-      const auto& used = tools_[std::size_t(tool)];
-      const auto proof =
-          used.ball_mill ? proof::prove_rapid(m, *used.ball_mill, blank) : proof::prove_rapid(m, used, blank);
-      if (!proof.clear) {
-        out_.rapids_clear = false;
-        proof::WorstPlace w = place_of(cut.deepest, m, 0, tool::Body::any);
-        w.patch = "blank";
-        w.radius_mm = proof.tip.head<2>().norm();
-        w.height_mm = proof.tip.z();
-        add_worst(out_, std::move(w));
-      }
-    }
-    ++out_.motions;
   }
 
   [[nodiscard]] const proof::GougeResult& so_far() const { return out_; }
@@ -173,6 +160,26 @@ class Chunk {
     if (taken.ball_mill) begin(ball_.emplace(part_, *taken.ball_mill, proof_mm(kBallModel), o_.limits.gouge_mm), 1);
     else begin(profile_.emplace(part_, taken, proof_mm(kProfileModel), o_.limits.gouge_mm), 0.5);
     for (const auto& f : taken.bodies) bodies_.push_back({f, false, Vec3::Zero(), Vec3::UnitZ(), 0});
+  }
+
+  /// Does it stay outside the blank? If not, that is noted.
+  bool rapid_is_clear(const path::ToolMotion& m, const tool::ProofTool& tool) {
+    const proof::RapidObstacle blank = obstacle_of(part_.part(), o_.rapid_height_mm);
+    const auto proof =
+        tool.ball_mill ? proof::prove_rapid(m, *tool.ball_mill, blank) : proof::prove_rapid(m, tool, blank);
+    if (proof.clear) return true;
+    out_.rapids_clear = false;
+    proof::WorstPlace w;
+    w.body = tool::Body::any;
+    w.patch = "blank";
+    w.operation = m.operation;
+    w.tooth = m.tooth;
+    w.line = m.line;
+    w.radius_mm = proof.tip.head<2>().norm();
+    w.height_mm = proof.tip.z();
+    w.point = proof.tip;
+    add_worst(out_, std::move(w));
+    return false;
   }
 
   /// @param share  of the proof's leeway by which the sweep lets bounds stand above the deepest place found

@@ -287,6 +287,7 @@ void MilledCheck::judge_unlike(process::ProgramProof& program, const OtherTeeth&
   for (const auto& [tooth, why] : unlike) teeth.insert(tooth);
   std::size_t refused = 0;
   for (auto& [tooth, cuts] : process::cuts_of(program, teeth)) {
+    if (refused > process::kTeethTold) break;  // it is not verified at any rate
     cut::CutSurface own = meter_.measure(process::in_space_0(std::move(cuts), this->teeth()), 0);
     std::vector<std::string> reasons;
     judge_surface(own, job_, limits_, reasons);
@@ -298,8 +299,7 @@ void MilledCheck::judge_unlike(process::ProgramProof& program, const OtherTeeth&
         program.reasons.push_back(reason == why ? why : fmt::format("tooth {}: {}", tooth, reason));
     if (own.finished.max_mm > surface.finished.max_mm) surface = std::move(own);
   }
-  if (refused > process::kTeethTold)
-    program.reasons.push_back(fmt::format("so it is with {} more teeth", refused - process::kTeethTold));
+  if (refused > process::kTeethTold) program.reasons.emplace_back("so it is with more teeth");
 }
 
 /// By what the job asks, and where that says nothing of the stock by a plan made anew.
