@@ -2,6 +2,7 @@
 // ones are refused.
 #include "cam/analytic/gouge_check.h"
 
+#include "cam/analytic/body_sweep.h"
 #include "tests/cam/analytic/gouge_case.h"
 #include "tests/support/brute_force_gear_solid.h"
 
@@ -148,6 +149,53 @@ TEST(WrongPrograms, RapidThroughTheBlank) {
       EXPECT_FALSE(passes(job, r));
     }
   }
+}
+
+/// A shank that goes down along an end of the ring: free, closer than is asked for, and in it. What it takes to say so
+/// does not grow with the length of the way; with ends that were halved on one side alone it took 800 000 pieces.
+TEST(WrongPrograms, AShankAlongAnEndIsJudgedInFewPieces) {
+  const auto& job = job_named("spur");
+  const tool::Frustum shank{0.5, 10.5, 0.475, 0.475, tool::Body::shank};
+  analytic::SweptGapOptions look;
+  look.contact_mm = 0.005;
+  look.asked_mm = 0.05;
+  for (const double gap : {0.18, 0.03, -0.006, -0.015, -0.1}) {
+    for (const double azimuth : {0.002, 0.026, 0.05, 0.08}) {
+      path::ToolMotion m;
+      m.axis_from = m.axis_to = Vec3::UnitZ();
+      const double r = job.gear.inner_radius() - gap - 0.475;
+      m.tip_from = {r * std::cos(azimuth), r * std::sin(azimuth), job.gear.blank_top() + 1};
+      m.tip_to = m.tip_from - 23 * Vec3::UnitZ();
+      const auto found = analytic::swept_gap(*job.part, shank, m, look);
+      EXPECT_LE(found.pieces, 40000U) << gap << " at " << azimuth;
+      EXPECT_LE(found.proven_mm, found.measured_mm);
+      EXPECT_GE(found.proven_mm, -0.475) << "no place lies deeper in a shank than its radius";
+      if (gap > 0.05) {
+        EXPECT_GE(found.proven_mm, 0.05) << gap << " at " << azimuth;
+      } else {
+        EXPECT_NEAR(found.measured_mm, gap, 0.002) << azimuth;
+      }
+    }
+  }
+}
+
+/// A rapid through the blank is refused for that; nobody asks what else it does.
+TEST(WrongPrograms, ARapidThroughTheBlankIsFollowedNoFarther) {
+  const auto& job = job_named("spur");
+  path::ToolMotion rapid;
+  rapid.rapid = true;
+  rapid.line = 17;
+  rapid.axis_from = rapid.axis_to = Vec3::UnitZ();
+  rapid.tip_from = {job.gear.inner_radius() + 1, 0, job.gear.blank_top() + 5};
+  rapid.tip_to = rapid.tip_from - 90 * Vec3::UnitZ();
+  const auto r = check(job, {rapid, rapid});
+  EXPECT_FALSE(r.rapids_clear);
+  EXPECT_FALSE(passes(job, r));
+  EXPECT_EQ(r.motions, 2U);
+  EXPECT_EQ(r.distance_queries, 0U);
+  ASSERT_FALSE(r.worst.empty());
+  EXPECT_EQ(r.worst.front().patch, "blank");
+  EXPECT_EQ(r.worst.front().line, 17);
 }
 
 TEST(WrongPrograms, ShankAndHolder) {
