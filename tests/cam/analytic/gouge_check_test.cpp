@@ -151,32 +151,31 @@ TEST(WrongPrograms, RapidThroughTheBlank) {
   }
 }
 
-/// A shank that goes down along an end of the ring: free, closer than is asked for, and in it. What it takes to say so
-/// does not grow with the length of the way; with ends that were halved on one side alone it took 800 000 pieces.
-TEST(WrongPrograms, AShankAlongAnEndIsJudgedInFewPieces) {
+/// A shank beside an end of the ring: free, closer than is asked for, and in it, at rest but for a little or on a long
+/// way. Ends that were halved on one side alone took 800 000 pieces.
+TEST(WrongPrograms, AShankBesideAnEndIsJudgedInFewPieces) {
   const auto& job = job_named("spur");
-  const tool::Frustum shank{0.5, 10.5, 0.475, 0.475, tool::Body::shank};
+  const tool::Frustum shank{6, 16, 0.475, 0.475, tool::Body::shank};
   analytic::SweptGapOptions look;
   look.contact_mm = 0.005;
   look.asked_mm = 0.05;
-  for (const double gap : {0.18, 0.03, -0.006, -0.015, -0.1}) {
-    for (const double azimuth : {0.002, 0.026, 0.05, 0.08}) {
-      path::ToolMotion m;
-      m.axis_from = m.axis_to = Vec3::UnitZ();
-      const double r = job.gear.inner_radius() - gap - 0.475;
-      m.tip_from = {r * std::cos(azimuth), r * std::sin(azimuth), job.gear.blank_top() + 1};
-      m.tip_to = m.tip_from - 23 * Vec3::UnitZ();
-      const auto found = analytic::swept_gap(*job.part, shank, m, look);
-      EXPECT_LE(found.pieces, 40000U) << gap << " at " << azimuth;
-      EXPECT_LE(found.proven_mm, found.measured_mm);
-      EXPECT_GE(found.proven_mm, -0.475) << "no place lies deeper in a shank than its radius";
-      if (gap > 0.05) {
-        EXPECT_GE(found.proven_mm, 0.05) << gap << " at " << azimuth;
-      } else {
-        EXPECT_NEAR(found.measured_mm, gap, 0.002) << azimuth;
-      }
-    }
+  Random random(59);
+  std::size_t most = 0;
+  for (int k = 0; k < 120; ++k) {
+    const double gap = k % 6 == 0 ? -0.015 : random(-0.2, 0.45), azimuth = random(0, job.gear.pitch());
+    const double r = job.gear.inner_radius() - gap - 0.475;
+    path::ToolMotion m;
+    m.axis_from = m.axis_to = Vec3::UnitZ();
+    m.tip_from = {r * std::cos(azimuth), r * std::sin(azimuth), job.gear.blank_top() - random(8, 22)};
+    m.tip_to = m.tip_from + Vec3(random(-0.1, 0.1), random(-0.3, 0.3), k % 3 == 0 ? -random(0, 23) : random(-0.3, 0.3));
+    const auto found = analytic::swept_gap(*job.part, shank, m, look);
+    most = std::max(most, found.pieces);
+    EXPECT_LE(found.pieces, 40000U) << k << ": gap " << gap;
+    EXPECT_LE(found.proven_mm, found.measured_mm) << k;
+    EXPECT_GE(found.proven_mm, -0.475) << k << ": no place lies deeper in a shank than its radius";
+    EXPECT_TRUE(found.measured_mm <= 0.07 || found.proven_mm >= 0.05) << k << ": " << found.proven_mm;
   }
+  RecordProperty("most_pieces", int(most));
 }
 
 /// A rapid through the blank is refused for that; nobody asks what else it does.
