@@ -36,7 +36,7 @@ sheet::DataGroup gear_data(const SpiralBevelGear& gear) {
                        {sheet::data_number("z", "number of teeth", p.teeth),
                         sheet::data_length("m_et", "outer transverse module", gear.body().module_mm),
                         sheet::data_length("m_mn", "mean normal module", mean_module * std::cos(spiral)),
-                        sheet::data_helix("beta_m", "mean spiral angle", p.hand * spiral),
+                        sheet::data_helix("beta_m", "mean spiral angle", p.hand * spiral, "zerol"),
                         sheet::data_angle("Sigma", "shaft angle", p.shaft_angle_rad)}};
   for (const Cut& cut : p.cuts)
     for (const Cuts side : {Cuts::concave, Cuts::convex})

@@ -23,9 +23,10 @@ DataRow data_length(std::string_view symbol, std::string_view what, double mm) {
 DataRow data_angle(std::string_view symbol, std::string_view what, double rad) {
   return row(symbol, what, fmt::format("{:.5f} deg", std::abs(degrees(rad)) < 5e-6 ? 0.0 : degrees(rad)));
 }
-DataRow data_helix(std::string_view symbol, std::string_view what, double rad) {
-  if (rad == 0) return row(symbol, what, "0 deg, spur");
-  return row(symbol, what, fmt::format("{:.5f} deg, {} hand", std::abs(degrees(rad)), rad > 0 ? "right" : "left"));
+DataRow data_helix(std::string_view symbol, std::string_view what, double rad, std::string_view without) {
+  const std::string angle = fmt::format("{:.5f}", std::abs(degrees(rad)));
+  if (angle == "0.00000") return row(symbol, what, fmt::format("0 deg, {}", without));
+  return row(symbol, what, fmt::format("{} deg, {} hand", angle, rad > 0 ? "right" : "left"));
 }
 
 std::string data_sheet_html(const DataSheet& data) {

@@ -26,8 +26,9 @@ struct DataSheet {
 [[nodiscard]] DataRow data_number(std::string_view symbol, std::string_view what, double value);
 [[nodiscard]] DataRow data_length(std::string_view symbol, std::string_view what, double mm);
 [[nodiscard]] DataRow data_angle(std::string_view symbol, std::string_view what, double rad);
-/// "right 15.0000 deg", "spur" where it is 0. @param rad > 0: right hand
-[[nodiscard]] DataRow data_helix(std::string_view symbol, std::string_view what, double rad);
+/// "15.00000 deg, right hand". @param rad > 0: right hand; @param without  the word for a gear whose angle is 0
+[[nodiscard]] DataRow data_helix(std::string_view symbol, std::string_view what, double rad,
+                                 std::string_view without = "spur");
 
 /// One self-contained page without script.
 [[nodiscard]] std::string data_sheet_html(const DataSheet& sheet);
