@@ -84,8 +84,17 @@ void read_zones(toml::TableReader& gear, face_gear::FaceGearParameters& result, 
   }
 }
 
+/// The body below the teeth.
+face_gear::Body read_face_body(toml::TableReader& stock) {
+  face_gear::Body body;
+  body.thickness_mm = stock.optional_number("thickness", kLength).value_or(0);
+  body.bore_mm = stock.optional_number("bore_diameter", kLengthOrZero);
+  optional_cylinder(stock, "hub", body.hub_mm, body.hub_length_mm);
+  return body;
+}
+
 /// With its [[gear.zone]] tables, and [stock] where there is one.
-face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::TableReader* stock,
+face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::TableReader* stock, face_gear::Body& body,
                                              const std::string& directory, std::vector<std::string>& warnings) {
   face_gear::FaceGearParameters p;
   p.teeth = gear.integer("teeth", kTeeth).value_or(0);
@@ -121,6 +130,7 @@ face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::Tabl
   if (stock) {
     p.allowance_top_mm = stock->number_or("allowance_top", {0, 1000, " mm"}, p.allowance_top_mm);
     p.groove_depth_mm = stock->optional_number("groove_depth", kLength).value_or(p.groove_depth_mm);
+    body = read_face_body(*stock);
     stock->finish();
   }
   return p;
@@ -412,7 +422,7 @@ constexpr GearType kGearTypes[] = {
     {"face_gear",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
        auto stock = root.table("stock");
-       job.gear = read_face_gear(gear, stock ? &*stock : nullptr, job.directory(), job.warnings);
+       job.gear = read_face_gear(gear, stock ? &*stock : nullptr, job.face_body, job.directory(), job.warnings);
      }},
     {"equal_base_circle_bevel_gear",
      [](toml::TableReader& gear, toml::TableReader& root, Job& job) {

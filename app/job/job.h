@@ -16,6 +16,7 @@
 #include "geometry/bevel_gear/parameters.h"
 #include "geometry/contact/pinion.h"
 #include "geometry/cylindrical/parameters.h"
+#include "geometry/face_gear/body.h"
 #include "geometry/face_gear/parameters.h"
 #include "geometry/flank_grid/parameters.h"
 #include "geometry/modification/modification.h"
@@ -137,6 +138,7 @@ struct Job {
                straight_bevel::StraightBevelParameters, spiral_bevel::SpiralBevelParameters,
                flank_grid::FlankGridParameters>
       gear;
+  face_gear::Body face_body;  ///< of a face gear, [stock]
   /// Of the flanks of gears that stand on their tooth spaces alone; other types have them among their parameters.
   std::vector<modification::Modification> modifications;
   MachineChoice machine;

@@ -4,6 +4,7 @@
 
 #include "app/job/form_mill.h"
 #include "geometry/base/angle.h"
+#include "geometry/face_gear/part.h"
 #include "machines/machine_file.h"
 #include "postproc/bodies/of_machine.h"
 #include "postproc/controls/of_machine.h"
@@ -67,7 +68,11 @@ ValueOrErrors<face_gear::FaceGear> make_face_gear(const job::Job& job) {
   const face_gear::FaceGearParameters* parameters = job.face_gear();
   if (!parameters) return std::vector{needs_face_gear(job)};
   auto made = face_gear::FaceGear::make(*parameters);
-  if (auto* gear = made.value_if()) return std::move(*gear);
+  if (auto* gear = made.value_if()) {
+    if (auto bad = face_gear::body_refusal(*gear, job.face_body))
+      return std::vector{located(job, bad->key, std::move(bad->diagnostic))};
+    return std::move(*gear);
+  }
   std::vector<Diagnostic> errors;
   for (auto& refusal : made.error()) {
     // The stock of the blank stands in its own table.

@@ -12,6 +12,19 @@ namespace {
 constexpr double kCloseToLimit = 0.5;  // of the module
 constexpr double kToldSize = 0.01;     // mm: to which another begin is told
 constexpr double kBaseModules = 2.5;   // thickness below the lowest point of teeth and groove
+constexpr double kWebModules = 0.5;    // top of the web below it
+constexpr double kLeastModules = 1;    // least thickness below it that a drawing may say
+
+double lowest_z(const FaceGear& gear) {
+  return gear.rings().size() > 1 ? std::min(gear.lowest_root(), gear.groove_floor()) : gear.lowest_root();
+}
+
+double tip_z(const FaceGear& gear) { return gear.blank_top() - gear.parameters().allowance_top_mm; }
+
+double back_z(const FaceGear& gear, const Body& body) {
+  return body.thickness_mm > 0 ? tip_z(gear) - body.thickness_mm
+                               : lowest_z(gear) - kBaseModules * gear.parameters().module_mm;
+}
 
 class FacePart final : public tooth_space::ToothedPart {
  public:
@@ -94,13 +107,32 @@ std::shared_ptr<const tooth_space::ToothedPart> part_of(const FaceGear& gear) {
   return std::make_shared<FacePart>(gear);
 }
 
-double underside_z(const FaceGear& gear) {
-  const double lowest = gear.lowest_root();
-  const double floor = gear.rings().size() > 1 ? std::min(lowest, gear.groove_floor()) : lowest;
-  return floor - kBaseModules * gear.parameters().module_mm;
+std::optional<Refusal> body_refusal(const FaceGear& gear, const Body& body) {
+  const double inside = 2 * gear.inner_radius(), outside = 2 * gear.outer_radius(),
+               bore = body.bore_mm.value_or(inside),
+               least = tip_z(gear) - lowest_z(gear) + kLeastModules * gear.parameters().module_mm;
+  if (body.thickness_mm > 0 && body.thickness_mm < least)
+    return Refusal{"stock.thickness",
+                   fail("thickness = {:.4f} mm is below {:.4f} mm, from the tips to {} module below roots and groove",
+                        body.thickness_mm, least, kLeastModules)};
+  if (bore > inside)
+    return Refusal{"stock.bore_diameter",
+                   fail("bore_diameter = {:.4f} mm exceeds {:.4f} mm, where the teeth begin", bore, inside)};
+  if (body.hub_length_mm > 0 && !(body.hub_mm > bore && body.hub_mm < outside))
+    return Refusal{"stock.hub_diameter",
+                   fail("hub_diameter = {:.4f} mm is not between the bore, {:.4f} mm, and {:.4f} mm, the teeth",
+                        body.hub_mm, bore, outside)};
+  return {};
 }
 
-tooth_space::ToothedSolid drawn_solid(const FaceGear& gear) {
+double underside_z(const FaceGear& gear, const Body& body) { return back_z(gear, body) - body.hub_length_mm; }
+
+std::optional<double> web_z(const FaceGear& gear, const Body& body) {
+  if (!body.bore_mm || *body.bore_mm >= 2 * gear.inner_radius()) return {};
+  return lowest_z(gear) - kWebModules * gear.parameters().module_mm;
+}
+
+tooth_space::ToothedSolid drawn_solid(const FaceGear& gear, const Body& body) {
   const auto& rings = gear.rings();
   tooth_space::ToothedSolid out;
   out.teeth = gear.parameters().teeth;
@@ -116,8 +148,15 @@ tooth_space::ToothedSolid drawn_solid(const FaceGear& gear) {
       out.corners.push_back({{rings[k].zone.outer_radius_mm, gear.groove_floor()},
                              {rings[k + 1].zone.inner_radius_mm, gear.groove_floor()}});
   }
-  const double under = underside_z(gear);
-  out.corners.push_back({{gear.outer_radius(), under}, {gear.inner_radius(), under}});
+  const double back = back_z(gear, body), under = underside_z(gear, body), inner = gear.inner_radius(),
+               bore = body.bore_mm ? 0.5 * *body.bore_mm : inner;
+  std::vector<Vec2> outline = {{gear.outer_radius(), back}};
+  if (under < back)
+    for (const double z : {back, under}) outline.emplace_back(0.5 * body.hub_mm, z);
+  outline.emplace_back(bore, under);
+  if (const auto web = web_z(gear, body))
+    for (const double r : {bore, inner}) outline.emplace_back(r, *web);
+  out.corners.push_back(std::move(outline));
   return out;
 }
 

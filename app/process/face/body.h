@@ -2,12 +2,13 @@
 #pragma once
 
 #include "app/process/milled/body.h"
+#include "geometry/face_gear/body.h"
 #include "geometry/face_gear/gear.h"
 
 namespace toothpath::face {
 
-/// Links keep clear of a cylinder from the underside of the mesh to the top of the stock, rapids of the rings. The gear
+/// Links keep clear of a cylinder from the underside of the body to the top of the stock, rapids of the rings. The gear
 /// must outlive it.
-[[nodiscard]] milled::GearBody body_of(const face_gear::FaceGear& gear);
+[[nodiscard]] milled::GearBody body_of(const face_gear::FaceGear& gear, const face_gear::Body& drawn = {});
 
 }  // namespace toothpath::face

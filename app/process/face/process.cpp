@@ -32,7 +32,7 @@ std::string gear_words(const face_gear::FaceGearParameters& p) {
   return text;
 }
 
-std::vector<sheet::DataGroup> gear_data(const face_gear::FaceGear& gear) {
+std::vector<sheet::DataGroup> gear_data(const face_gear::FaceGear& gear, const face_gear::Body& body) {
   const face_gear::FaceGearParameters& p = gear.parameters();
   const bool normal = p.module_plane == face_gear::ModulePlane::normal;
   sheet::DataGroup whole{
@@ -50,6 +50,12 @@ std::vector<sheet::DataGroup> gear_data(const face_gear::FaceGear& gear) {
        sheet::data_length("d_o", "outside diameter of the teeth", 2 * gear.outer_radius()),
        sheet::data_length("d_i", "inside diameter of the teeth", 2 * gear.inner_radius())}};
   if (p.mate_teeth > 0) whole.rows.push_back(sheet::data_number("z_1", "teeth of the pinion", p.mate_teeth));
+  if (body.thickness_mm > 0) whole.rows.push_back(sheet::data_length("H", "from tips to back", body.thickness_mm));
+  if (body.bore_mm) whole.rows.push_back(sheet::data_length("", "bore", *body.bore_mm));
+  if (body.hub_length_mm > 0) {
+    whole.rows.push_back(sheet::data_length("d_h", "hub, diameter", body.hub_mm));
+    whole.rows.push_back(sheet::data_length("l_h", "hub, length behind the back", body.hub_length_mm));
+  }
   std::vector<sheet::DataGroup> out{std::move(whole)};
   const auto part = face_gear::part_of(gear);
   for (int zone = 0; zone < part->zones(); ++zone) {
@@ -75,12 +81,12 @@ std::vector<sheet::DataGroup> gear_data(const face_gear::FaceGear& gear) {
 
 using Owned = std::shared_ptr<const face_gear::FaceGear>;
 
-milled::ToothedGear toothed(const Owned& owned) {
+milled::ToothedGear toothed(const Owned& owned, const face_gear::Body& body) {
   const face_gear::FaceGear& gear = *owned;
   const face_gear::FaceGearParameters& p = gear.parameters();
   milled::ToothedGear out;
   out.part = face_gear::part_of(gear);
-  out.solid = drawn_solid(gear);
+  out.solid = drawn_solid(gear, body);
   out.owner = owned;
   out.facts = {p.teeth, 2 * gear.outer_radius(), 2 * gear.outer_radius(), gear.warnings()};
   report::ModifiedFlanks modified{p.modifications, {}};
@@ -88,11 +94,15 @@ milled::ToothedGear toothed(const Owned& owned) {
     if (const auto& form = gear.rings()[zone].form) modified.zones.push_back({static_cast<int>(zone), *form});
   if (!modified.zones.empty()) out.facts.modified = std::move(modified);
   out.above_mm = p.allowance_top_mm;
-  out.body = body_of(gear);
-  out.outline = {gear.inner_radius(), gear.outer_radius(),          gear.blank_top(),
-                 gear.lowest_root(),  face_gear::underside_z(gear), gear_words(p)};
+  out.body = body_of(gear, body);
+  out.outline = {gear.inner_radius(),
+                 gear.outer_radius(),
+                 gear.blank_top(),
+                 gear.lowest_root(),
+                 face_gear::underside_z(gear, body),
+                 gear_words(p)};
   out.subtitle = fmt::format("face gear {}/{}, module {} mm", p.shaper_teeth, p.teeth, svg::short_number(p.module_mm));
-  out.data = gear_data(gear);
+  out.data = gear_data(gear, body);
   out.limits_json = [owned] { return limits::limits_json(*owned); };
   return out;
 }
@@ -100,7 +110,8 @@ milled::ToothedGear toothed(const Owned& owned) {
 /// The pair with the pinion of its shaper, corrections of points, and what files and pages say of its limits.
 class FaceProcess final : public milled::ToothedProcess {
  public:
-  FaceProcess(const job::Job& job, Owned gear) : ToothedProcess(job, face::toothed(gear)), gear_(std::move(gear)) {}
+  FaceProcess(const job::Job& job, Owned gear)
+      : ToothedProcess(job, face::toothed(gear, job.face_body)), gear_(std::move(gear)) {}
 
   [[nodiscard]] Result<process::Correction> correct(const job::MeasuredInput& measured,
                                                     app::StageClock& clock) override {
@@ -112,7 +123,7 @@ class FaceProcess final : public milled::ToothedProcess {
     out.warnings = corrected->fit.warnings;
     out.json = job::correction_json(*corrected);
     gear_ = std::make_shared<const face_gear::FaceGear>(std::move(corrected->gear));
-    become(face::toothed(gear_));
+    become(face::toothed(gear_, job().face_body));
     return out;
   }
   [[nodiscard]] std::vector<svg::LineChart> limit_charts() const override { return limits::limit_charts(*gear_); }

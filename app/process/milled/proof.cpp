@@ -10,7 +10,9 @@
 #include "app/process/proof_limits.h"
 #include "cam/ball/plan.h"
 #include "cam/path/asked_stock.h"
+#include "cam/path/motion_blend.h"
 #include "cam/proof/rapid_clearance.h"
+#include "cam/proof/roof.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/work_share.h"
 #include "geometry/tooth_space/zone_next_to.h"
@@ -317,8 +319,28 @@ process::LoadJudge MilledCheck::load_judge() const {
   return process::LoadJudge(std::move(query));
 }
 
-void MilledCheck::meet(const readback::OperationTrace&, std::span<const path::ToolMotion>, const readback::NcControl&) {
-}  // all that is said of the gear holds for the teeth that are proven
+/// A web beside the teeth is no part of the tooth spaces: nothing comes as low as it stands.
+void MilledCheck::meet(const readback::OperationTrace&, std::span<const path::ToolMotion> motions,
+                       const readback::NcControl&) {
+  if (!body_.web_z || !into_web_.empty()) return;
+  const proof::Roof web(part_.part().chart(), *body_.web_z);
+  for (const path::ToolMotion& m : motions) {
+    if (m.rapid) continue;  // they keep clear of all of the body
+    const tool::ProofTool& tool = tool_of(m.operation);
+    std::vector<tool::RoundedFrustum> bodies = tool.cutting;
+    for (const tool::Frustum& body : tool.bodies) bodies.push_back({body, 0});
+    for (const tool::RoundedFrustum& body : bodies) {
+      const double reach = std::hypot(body.core.to + body.round, body.widest()),
+                   over = web.over(body, m.tip_from, m.axis_from, m.tip_to, m.axis_to) - path::line_slack(m, reach, 1);
+      if (over >= 0) continue;
+      into_web_ = fmt::format(
+          "line {}: the {} of tool {} comes {:.4f} mm below z {:.4f} mm, where the web between the bore and the teeth "
+          "stands (stock.bore_diameter)",
+          m.line, body.core.body, tool.number, -over, *body_.web_z);
+      return;
+    }
+  }
+}
 
 void MilledCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   std::vector<int> tool_of_operation;
@@ -341,6 +363,7 @@ void MilledCheck::judge(process::ProgramProof& program, app::StageClock& clock) 
     });
   });
   judge_gouge(program.gouge, check_, limits_.gouge_mm, program.reasons);
+  if (!into_web_.empty()) program.reasons.push_back(into_web_);
   judge_surface(surface, job_, limits_, program.reasons);
   clock.run("cut surface", [&] { judge_unlike(program, others); });
   if (load)

@@ -50,6 +50,7 @@ class MilledCheck final : public process::GearCheck {
   const GearBody& body_;
   const analytic::GougeCheck& check_;
   std::vector<tool::ProofTool> tools_;  // of the job
+  std::string into_web_;                // what was met first that comes too low; empty: nothing does
   cut::SurfaceMeter meter_;
 };
 
