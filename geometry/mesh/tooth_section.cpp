@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/tooth_space/limits.h"
 #include "geometry/tooth_space/toothed_solid.h"
 
 namespace toothpath::mesh {
@@ -138,8 +139,11 @@ Result<ToothSection::Side> ToothSection::make_side(const ToothSpace& space, int 
   if (!end) return fail("flank {:+d} does not reach its fillet at {}: undercut", side, where());
   std::optional<tooth_space::Near> joined;
   if (before) joined = tooth_space::Near{before->fillet.nodes.front().v, near->s_};
-  const auto v_join =
-      first_v(space, fillet, u_join, s, joined, [&](const Vec3& p) { return (p - end->p).norm() <= kJoin_mm; });
+  const auto fits = [&](const Vec3& p) { return (p - end->p).norm() <= kJoin_mm; };
+  auto v_join = first_v(space, fillet, u_join, s, joined, fits);
+  if (!v_join)  // v may run quickly up a fillet
+    if (const auto v = tooth_space::v_at(space, fillet, u_join, s))
+      if (const auto q = space.at(fillet, u_join, *v); q && fits(q->p)) v_join = v;
   if (!v_join) return fail("fillet {:+d} does not join its flank at {}: undercut", side, where());
   const auto along_fillet = followed(space, fillet, s, u_join, *v_join, u_root);
   if (!along_fillet) return fail("fillet {:+d} does not reach the root at {}", side, where());

@@ -16,9 +16,11 @@ Borders CutterKernel::borders(Piece piece) const {
   return borders_of(piece, wall(1), wall(-1));
 }
 
+/// Of a narrow face more than the face: the cutter sweeps over the same flanks.
 Vec2 CutterKernel::longest_step(Piece piece) const {
-  const double u = is_flank(piece) ? 0.25 * (R_e - R_i) : piece == Piece::root ? 0.5 : 0.2;
-  return {u, 0.25 * (R_e - R_i)};
+  const double v = 0.25 * std::max(R_e - R_i, 0.25 * R_e);
+  const double u = is_flank(piece) ? v : piece == Piece::root ? 0.5 : 0.2;
+  return {u, v};
 }
 
 CutterKernel::Rail CutterKernel::rail(std::size_t flank, double s) const {

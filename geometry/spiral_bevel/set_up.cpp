@@ -125,6 +125,18 @@ std::optional<Vec2> climbed(const CutterKernel& k, Piece piece, double s, double
   return followed<Vec2>(at, h_from, h_to, Vec2(0, 0), solve);
 }
 
+/// v of the edge between fillet and flank at s, from the root over the fillet.
+std::optional<double> over_fillet(const CutterKernel& k, std::size_t flank, double s) {
+  constexpr int kSteps = 12;
+  const Piece fillet = tooth_space::fillet_of(tooth_space::side_of(piece_of(k, flank)));
+  const double way = k.flanks[flank].alpha - kPi / 2;
+  std::optional<double> v = s;
+  for (int n = 1; n <= kSteps && v; ++n)
+    v = followed<double>(*v, kPi / 2 + way * (n - 1) / kSteps, kPi / 2 + way * n / kSteps, 0.0,
+                         [&](double near, double u) { return k.solve_v(fillet, u, s, near); });
+  return v;
+}
+
 /// Along the face from its middle; not a number from where the flank ends.
 void lay_rails(CutterKernel& k, std::size_t flank) {
   constexpr std::size_t kMiddle = CutterKernel::kRails / 2;
@@ -150,7 +162,7 @@ void lay_rails(CutterKernel& k, std::size_t flank) {
     rail.u_tip = at.x();
     rail.v = {at_u(u_F, near[0]), at_u(0.5 * (u_F + at.x()), near[1]), at.y()};
   };
-  lay(kMiddle, s_mean, {s_mean, k.middle[flank].y(), 0}, tip);
+  lay(kMiddle, s_mean, {over_fillet(k, flank, s_mean).value_or(s_mean), k.middle[flank].y(), 0}, tip);
   for (const int way : {-1, 1})
     for (std::size_t n = kMiddle; n != (way < 0 ? 0 : CutterKernel::kRails - 1);) {
       const CutterKernel::Rail& from = rails[n];
@@ -165,27 +177,37 @@ std::optional<Refusal> meet_pitch_cone(const SpiralBevelParameters& gear, Cutter
   const Piece piece = piece_of(k, flank);
   const double R_m = gear.mean_cone_distance();
   const char* name = flank == 0 ? "concave" : "convex";
-  Vec3 p, n;
-  (void)k.place<double>(piece, k.flanks[flank].u_F, -R_m, p, n);
-  const double h_F = chart_of(gear).up(p);
-  if (!(h_F < 0))
+  const double u_F = k.flanks[flank].u_F;
+  const auto height = [&](double v) {
+    Vec3 p, n;
+    (void)k.place<double>(piece, u_F, v, p, n);
+    return chart_of(gear).up(p);
+  };
+  if (const double h_F = height(-R_m); !(h_F < 0))
     return Refusal{cut_key(gear, flank, "sliding_base"),
                    fail("sliding_base = {:.4f} mm: the {} flank begins {:.4f} mm above the pitch cone at cone distance "
                         "{:.4f} mm, limit 0",
                         gear.cuts[cut_of(gear, flank)].sliding_base_mm, name, h_F, R_m)};
-  // Upwards along the blade in steps: the pitch cone may lie far above the fillet.
-  Vec2& at = k.middle[flank];
-  at = {k.flanks[flank].u_F, -R_m};
-  constexpr int kSteps = 8;
-  for (int step = 1; step <= kSteps; ++step) {
-    const auto next = climbed(k, piece, -R_m, h_F * (kSteps - step + 1) / kSteps, h_F * (kSteps - step) / kSteps, at);
-    if (!next)
-      return Refusal{cut_key(gear, flank, "blade_pressure_angle"),
-                     fail("blade_pressure_angle = {:.4f} deg: the cutter undercuts the {} flank, which does not reach "
-                          "the pitch cone at cone distance {:.4f} mm; more pressure angle or less depth is needed",
-                          degrees(k.flanks[flank].alpha), name, R_m)};
-    at = *next;
-  }
+  // Upwards along the blade in steps: the pitch cone may lie far above the fillet. Beside an undercut, where v runs
+  // quickly over the fillet, from where that leads.
+  const auto up_from = [&](double v_F) {
+    constexpr int kSteps = 8;
+    const double h_F = height(v_F);
+    std::optional<Vec2> at = Vec2(u_F, v_F);
+    for (int step = kSteps; step > 0 && at; --step)
+      at = climbed(k, piece, -R_m, h_F * step / kSteps, h_F * (step - 1) / kSteps, *at);
+    return at;
+  };
+  auto at = up_from(-R_m);
+  if (!at)
+    if (const auto v_F = over_fillet(k, flank, -R_m); v_F && height(*v_F) < 0) at = up_from(*v_F);
+  if (!at)
+    return Refusal{
+        cut_key(gear, flank, "blade_pressure_angle"),
+        fail("blade_pressure_angle = {:.4f} deg: the cutter undercuts the {} flank, which does not reach the "
+             "pitch cone at cone distance {:.4f} mm; more pressure angle or less depth is needed",
+             degrees(k.flanks[flank].alpha), name, R_m)};
+  k.middle[flank] = *at;
   return {};
 }
 

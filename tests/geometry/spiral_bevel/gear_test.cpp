@@ -1,11 +1,13 @@
 // Spiral bevel gears against printed numbers, against the sweep of their cutters, and what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <span>
 
 #include "geometry/spiral_bevel/set_up.h"
 #include "geometry/tooth_space/limits.h"
+#include "geometry/tooth_space/tooth_size.h"
 #include "tests/geometry/spiral_bevel/samples.h"
 #include "tests/support/random.h"
 
@@ -501,6 +503,34 @@ TEST(SpiralBevel, FlanksAreFollowedEvenly) {
     }
   }
   EXPECT_EQ(by_circle, 5);
+}
+
+/// The same cutters on a blank whose face ends elsewhere leave the same flanks: a narrow face is a piece of a wide one,
+/// turned about the axis.
+TEST(SpiralBevel, ANarrowFaceIsAPieceOfAWideOne) {
+  constexpr int kAlong = 3, kHeights = 5;
+  for (const double blade : {8.5, 10.0, 12.0, 22.0})
+    for (const double outer : {73.75, 93.7514}) {
+      const auto wide = made(steep_gear(blade));
+      auto parameters = steep_gear(blade);
+      parameters.outer_cone_distance_mm = outer;
+      parameters.face_width_mm = 5.4;
+      const auto narrow = made(parameters);
+      const auto& ring = narrow.space().outline();
+      std::vector<double> turns;
+      for (const int side : {1, -1})
+        for (int k = 0; k <= kAlong; ++k)
+          for (int n = 0; n <= kHeights; ++n) {
+            const double s = ring.s_from + (ring.s_to - ring.s_from) * k / kAlong, tip = narrow.space().tip(s),
+                         h = tip - 2.0 * n / kHeights;
+            const auto a = tooth_space::flank_at(narrow.space(), side, s, h),
+                       b = tooth_space::flank_at(wide.space(), side, s, h);
+            ASSERT_TRUE(a && b) << blade << ", outer " << outer << ", side " << side << ", s " << s << ", h " << h;
+            turns.push_back(wrapped(azimuth(a->at.p) - azimuth(b->at.p)));
+          }
+      const auto [least, most] = std::minmax_element(turns.begin(), turns.end());
+      EXPECT_LE((*most - *least) * outer, 1e-8) << blade << ", outer " << outer;
+    }
 }
 
 TEST(SpiralBevel, EveryLimitIsRefusedByItsKey) {
