@@ -180,8 +180,7 @@ std::optional<Refusal> meet_pitch_cone(const SpiralBevelParameters& gear, Cutter
   const double u_F = k.flanks[flank].u_F;
   const auto height = [&](double v) {
     Vec3 p, n;
-    (void)k.place<double>(piece, u_F, v, p, n);
-    return chart_of(gear).up(p);
+    return k.place<double>(piece, u_F, v, p, n) ? chart_of(gear).up(p) : NAN;
   };
   if (const double h_F = height(-R_m); !(h_F < 0))
     return Refusal{cut_key(gear, flank, "sliding_base"),
