@@ -169,16 +169,10 @@ class Chunk {
         tool.ball_mill ? proof::prove_rapid(m, *tool.ball_mill, blank) : proof::prove_rapid(m, tool, blank);
     if (proof.clear) return true;
     out_.rapids_clear = false;
-    proof::WorstPlace w;
-    w.body = tool::Body::any;
-    w.patch = "blank";
-    w.operation = m.operation;
-    w.tooth = m.tooth;
-    w.line = m.line;
-    w.radius_mm = proof.tip.head<2>().norm();
-    w.height_mm = proof.tip.z();
-    w.point = proof.tip;
-    add_worst(out_, std::move(w));
+    NearestPlace there;
+    there.patch = "blank";
+    there.foot = proof.tip;
+    add_worst(out_, place_of(there, m, 0, tool::Body::any));
     return false;
   }
 
