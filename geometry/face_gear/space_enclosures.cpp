@@ -83,9 +83,10 @@ Jet SpaceEnclosures::fillet(int side, const Second& A, const Second& Z) const {
   return jet;
 }
 
+/// Of z_tip, differentiated by hand: it is asked for at every piece of the surface that a body comes near.
 tooth_space::CurveBend SpaceEnclosures::tip(double r_from, double r_to) const {
-  const Second z = f2.z_tip(tooth_space::box_variable(Interval(r_from, r_to), 1, 0));
-  return {z.v.d[0], z.d[0].d[0]};
+  const Interval r(r_from, r_to), E = f1.E.v, tilt = f1.Cg.v / f1.Sg.v, run = sqrt(r * r - E * E);
+  return {-tilt * r / run, tilt * E * E / (run * run * run)};
 }
 
 std::optional<tooth_space::CurveBend> SpaceEnclosures::tip_azimuth(const FlankField& field, int side,
