@@ -69,7 +69,8 @@ double MovesJudge::aim(const State& state) const {
 void MovesJudge::add(const readback::ExecutedMove& move) {
   if (scene_.pairs().empty()) return;
   const bool other_tooth = last_ && (move.operation != last_->operation || move.tooth != last_->tooth);
-  if (tooth_.size() >= kChunk || other_tooth || move.tool != tool_) end_tooth();
+  const bool comes_round = last_ && move.tooth < 0 && move.line <= last_->line;  // a loop, or the next call
+  if (tooth_.size() >= kChunk || other_tooth || comes_round || move.tool != tool_) end_tooth();
   if (move.tool != tool_) flush();
   tool_ = move.tool;
   ++moves_;
@@ -155,7 +156,7 @@ bool MovesJudge::alike(const Span& a, const Span& b) const {
 }
 
 bool MovesJudge::repeats() {
-  if (turn_ >= 5 || tooth_.size() >= kChunk || tooth_.front().tooth < 0) return false;
+  if (turn_ >= 5 || tooth_.size() >= kChunk) return false;
   auto& kept = kept_[tooth_.front().operation];
   for (const std::vector<Span>& other : kept)
     if (other.size() == tooth_.size() && std::equal(other.begin(), other.end(), tooth_.begin(),
@@ -175,7 +176,8 @@ void MovesJudge::end_tooth() {
     batch.spans.insert(batch.spans.end(), tooth_.begin(), tooth_.end());
   };
   if (any_turned_) append(all_, true);
-  if (!repeats()) append(fresh_, false);
+  if (repeats()) repeated_ += tooth_.size();
+  else append(fresh_, false);
   tooth_.clear();
 }
 
@@ -414,6 +416,7 @@ MovesFound MovesJudge::finish() {
   found.pairs = scene_.pairs().size();
   found.moves = moves_;
   found.unjudged = unjudged_;
+  found.repeated = repeated_;
   found.bearing = scene_.bearing();
   found.required_mm = options_.required_mm;
   found.look_mm = options_.look_mm;

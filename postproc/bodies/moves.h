@@ -2,10 +2,11 @@
 //
 // Moves are taken in order, as they were read back, and looked at together: the joints of many moves lie in a box of
 // joint space, and a gap at its middle that exceeds the way to its corners (postproc/bodies/scene.h) is a gap on all of
-// them. Boxes are halved until the gaps are proven. A tooth whose joints are those of another one but for the turn of
-// the table that carries the work is not looked at again, where that turn moves no gap. Rapids that move X and Y, or
-// two rotaries, are boxes themselves: which of the axes arrives first is not known. With TCP the linear axes follow the
-// rotaries; what they leave their chord by is an eighth of the second derivative, as in postproc/readback/motion.cpp.
+// them. Boxes are halved until the gaps are proven. A tooth, or a turn of a loop, whose joints are those of another one
+// but for the turn of the table that carries the work is not looked at again, where that turn moves no gap. Rapids that
+// move X and Y, or two rotaries, are boxes themselves: which of the axes arrives first is not known. With TCP the
+// linear axes follow the rotaries; what they leave their chord by is an eighth of the second derivative, as in
+// postproc/readback/motion.cpp.
 #pragma once
 
 #include <map>
@@ -50,6 +51,7 @@ struct MovesFound {
   std::size_t stated = 0;  ///< bodies of the machine; 0: nothing was looked at
   std::size_t pairs = 0, moves = 0;
   std::size_t unjudged = 0;          ///< moves from a place that the program does not tell
+  std::size_t repeated = 0;          ///< stretches of teeth and turns that repeat another one
   std::vector<std::string> bearing;  ///< pairs that bear on one another and are not looked at
   std::vector<Meeting> nearest;      ///< pairs that come nearer than look_mm, nearest first
   std::vector<Meeting> failed;       ///< first place of every pair that comes too near, in the order of the program
@@ -137,7 +139,7 @@ class MovesJudge {
   std::optional<readback::ExecutedMove> last_, before_;
   double machine_z_ = -INFINITY;  ///< joint: the highest place so far that does not move with the work
   int tool_ = 0;
-  std::size_t moves_ = 0, unjudged_ = 0;
+  std::size_t moves_ = 0, unjudged_ = 0, repeated_ = 0;
 };
 
 }  // namespace toothpath::bodies

@@ -129,7 +129,8 @@ struct Counts {
 };
 
 /// Every pair against brute force: nothing is nearer than proven, and what meets is told where it meets first.
-void expect_proven(const Trial& trial, int i, Counts& counts) {
+/// @param lines_rise  those of the moves do, so that they say which is first
+void expect_proven(const Trial& trial, int i, Counts& counts, bool lines_rise = true) {
   std::mt19937_64 rng(std::uint64_t(i) + 11);
   std::uniform_real_distribution<double> share(0, 1);
   const MovesOptions options{.required_mm = 0, .look_mm = 1e4};
@@ -167,7 +168,7 @@ void expect_proven(const Trial& trial, int i, Counts& counts) {
       EXPECT_GT(least, 0);
     } else {
       ++counts.collided;
-      if (first > 0) { EXPECT_LE(failed->line, first) << i; }
+      if (first > 0 && lines_rise) { EXPECT_LE(failed->line, first) << i; }
       EXPECT_TRUE(first > 0 || failed->measured_mm < 0.5) << i << " " << failed->measured_mm << " " << least;
     }
   }
@@ -182,7 +183,8 @@ TEST(Moves, NothingIsNearerThanProven) {
 }
 
 /// The moves of a trial as five teeth, turned by the joint next to the work; the fourth one goes another way.
-Trial in_teeth(Trial trial) {
+/// @param loop  they are turns of a loop, not named
+Trial in_teeth(Trial trial, bool loop) {
   const machines::Links links(trial.machine.chain);
   const machines::Joint& turn = links.joints().front();
   std::vector<ExecutedMove> one = std::move(trial.moves);
@@ -190,8 +192,8 @@ Trial in_teeth(Trial trial) {
   int line = 0;
   for (int tooth = 0; tooth < 5; ++tooth)
     for (ExecutedMove m : one) {
-      m.line = ++line;
-      m.tooth = std::int16_t(tooth);
+      if (!loop) m.line = ++line;
+      m.tooth = std::int16_t(loop ? -1 : tooth);
       if (turn.rotary && links.bed() > 0) m.joints[3 + turn.axis] += 40.0 * tooth;
       if (tooth == 3) m.joints[2] -= 15;
       const Joints q{Vec3(m.joints[0], m.joints[1], m.joints[2]), {radians(m.joints[3]), radians(m.joints[4])}};
@@ -202,21 +204,25 @@ Trial in_teeth(Trial trial) {
 }
 
 TEST(Moves, NothingIsNearerThanProvenOnTeethThatRepeat) {
-  std::mt19937_64 rng(12);
-  Counts counts;
-  for (int i = 0; i < 10; ++i) expect_proven(in_teeth(random_trial(rng, i)), i, counts);
-  EXPECT_GT(counts.judged, 30);
-  EXPECT_GT(counts.collided, 2);
+  for (const bool loop : {false, true}) {
+    std::mt19937_64 rng(12);
+    Counts counts;
+    for (int i = 0; i < 10; ++i) expect_proven(in_teeth(random_trial(rng, i), loop), i, counts, !loop);
+    EXPECT_GT(counts.judged, 30);
+    EXPECT_GT(counts.collided, 2);
+  }
 }
 
 // Ten teeth alike. A tool that goes deeper in the seventh one; a post on the table that comes under it with the fifth.
+// Written out and named, or turns of a loop.
 TEST(Moves, OneToothOfManyIsFound) {
   const machines::Machine machine = machine_with(test::ac_table());
   const Vec3 at = machine.chain.table.front().point_mm;
   std::vector<Body> bodies = {
       {"plate", 0, Kind::machine, rod(at, Vec3::UnitZ(), 20, 80)},
       {"nose", machines::Links(machine.chain).count() - 1, Kind::machine, rod(Vec3::Zero(), Vec3::UnitZ(), 50, 10)}};
-  const auto line_of_failure = [&](bool deeper, bool post) {
+  bool loop = false;
+  const auto failure = [&](bool deeper, bool post) {
     std::vector<Body> all = bodies;
     const double fifth = radians(36.0 * 5);
     if (post)  // under the nose once the table has turned by five teeth
@@ -226,19 +232,26 @@ TEST(Moves, OneToothOfManyIsFound) {
     for (int tooth = 0; tooth < 10; ++tooth)
       for (int k = 0; k < 4; ++k) {
         const double z = at.z() + (deeper && tooth == 7 && k == 2 ? 15 : k % 2 == 0 ? 40 : 90);
-        ExecutedMove m =
-            move_to({Vec3(at.x() + 60, at.y(), z), {radians(36.0 * tooth), 0}}, 100 + 10 * tooth + k, k % 2 == 1);
-        m.tooth = std::int16_t(tooth);
+        ExecutedMove m = move_to({Vec3(at.x() + 60, at.y(), z), {radians(36.0 * tooth), 0}},
+                                 100 + (loop ? 0 : 10 * tooth) + k, k % 2 == 1);
+        m.tooth = std::int16_t(loop ? -1 : tooth);
         judge.add(m);
       }
     const MovesFound found = judge.finish();
-    return found.clear() ? 0 : found.failed.front().line;
+    // The first move of the first tooth comes from nowhere, that of the others from above; the post stands beside all.
+    if (!post) { EXPECT_EQ(found.repeated, deeper ? 4 * 7 : 4 * 8) << loop; }
+    return found.clear() ? std::pair(0, 0.0)
+                         : std::pair(found.failed.front().line, degrees(found.failed.front().joints.rotary_rad[0]));
   };
-  EXPECT_EQ(line_of_failure(false, false), 0);
-  EXPECT_EQ(line_of_failure(true, false), 172);
-  const int line = line_of_failure(false, true);
+  EXPECT_EQ(failure(false, false).first, 0);
+  EXPECT_EQ(failure(true, false).first, 172);
+  const int line = failure(false, true).first;
   EXPECT_GE(line, 140);  // the turn to it, from above, or its first cut
   EXPECT_LE(line, 152);
+  loop = true;
+  EXPECT_EQ(failure(false, false).first, 0);
+  EXPECT_EQ(failure(true, false), std::pair(102, 36.0 * 7));
+  EXPECT_NEAR(failure(false, true).second, 36.0 * 5, 36.0);
 }
 
 /// A cradle machine: C on A, a table, a cradle, a column and a spindle nose.
