@@ -1,5 +1,7 @@
 #include "cam/analytic/body_patches.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -50,7 +52,32 @@ Arc arc_of(const BodyQuad& q, const tooth_space::Chart& chart) {
 BodyPatches::BodyPatches(const tooth_space::ToothSpace& space, BodyRing ring, std::size_t cells)
     : space_(space), ring_(std::move(ring)), cells_(cells), boxes_(cells) {}
 
-void BodyPatches::add_block(tooth_space::Piece piece, const std::vector<SheetCell>& cells) {
+void BodyPatches::add_blocks(const std::vector<SheetBlock>& blocks) {
+  std::vector<std::vector<MadeBlock>> made(blocks.size());
+  tbb::parallel_for(std::size_t(0), blocks.size(), [&](std::size_t n) { make(blocks[n], made[n]); });
+  std::vector<std::size_t> added;
+  for (const auto& parts : made)
+    for (const auto& [block, cells] : parts) {
+      sampled_ += block.sampled ? 1 : 0;
+      blocks_.push_back(block);
+      for (const auto& c : cells) {
+        Cell& cell = cells_[c.index] = Cell{};
+        cell.surface.piece = block.piece;
+        cell.block = std::uint32_t(blocks_.size() - 1);
+        for (std::size_t k = 0; k < 4; ++k) {
+          cell.quad.at[k] = block.frame.ab(c.uv[k]);
+          cell.quad.corner[k] = c.corner[k];
+          cell.quad.stands[k] = on_ring(space_, c.corner[k], kStands);
+        }
+        added.push_back(c.index);
+      }
+    }
+  tbb::parallel_for(std::size_t(0), added.size(), [&](std::size_t n) { measure(added[n]); });
+  for (const std::size_t index : added) search_margin_ = std::max(search_margin_, cells_[index].sag);
+}
+
+void BodyPatches::make(const SheetBlock& of, std::vector<MadeBlock>& out) const {
+  const auto& [piece, cells] = of;
   if (cells.empty()) return;
   Block block;
   block.piece = piece;
@@ -74,29 +101,18 @@ void BodyPatches::add_block(tooth_space::Piece piece, const std::vector<SheetCel
   if (const auto bend = patch_bend(space_, piece, block.frame, half_a, half_b)) {
     block.bend = *bend;
   } else if (cells.size() > 1) {
-    for (const auto& c : cells) add_block(piece, {c});  // a smaller box may do
+    for (const auto& c : cells) make({piece, {c}}, out);  // a smaller box may do
     return;
   } else {
     const auto sliced = sliced_bend(space_, piece, block.frame, half_a, half_b);
+    block.sampled = !sliced;
     block.bend = sliced ? *sliced : sheet_bend(block, half_a, half_b);
   }
-  blocks_.push_back(block);
-  for (const auto& c : cells) {
-    Cell cell;
-    cell.surface.piece = piece;
-    cell.block = std::uint32_t(blocks_.size() - 1);
-    for (std::size_t k = 0; k < 4; ++k) {
-      cell.quad.at[k] = block.frame.ab(c.uv[k]);
-      cell.quad.corner[k] = c.corner[k];
-      cell.quad.stands[k] = on_ring(space_, c.corner[k], kStands);
-    }
-    keep(c.index, cell);
-  }
+  out.push_back({block, cells});
 }
 
 /// From second differences, where no proven bound is found.
-PatchBend BodyPatches::sheet_bend(const Block& block, double half_a, double half_b) {
-  ++sampled_;
+PatchBend BodyPatches::sheet_bend(const Block& block, double half_a, double half_b) const {
   const auto p = [&](double a, double b) {
     const Vec2 uv = block.frame.uv({a * half_a, b * half_b});
     const auto q = space_.point(block.piece, uv.x(), uv.y());
@@ -113,7 +129,7 @@ PatchBend BodyPatches::sheet_bend(const Block& block, double half_a, double half
 
 void BodyPatches::add(std::size_t index, BodySurface surface, const Vec2& low, const Vec2& high,
                       const std::array<Vec3, 4>& found_by) {
-  Cell cell;
+  Cell& cell = cells_[index] = Cell{};
   cell.surface = surface;
   if (surface.piece == Piece::tip) {
     Block block;
@@ -122,7 +138,7 @@ void BodyPatches::add(std::size_t index, BodySurface surface, const Vec2& low, c
     blocks_.push_back(block);
   }
   cell.quad = made(cell, {low, Vec2(high.x(), low.y()), high, Vec2(low.x(), high.y())});
-  keep(index, cell);
+  measure(index);
   double off = 0;
   for (const Vec3& c : cell.quad.corner) {
     double least = INFINITY;
@@ -132,8 +148,8 @@ void BodyPatches::add(std::size_t index, BodySurface surface, const Vec2& low, c
   search_margin_ = std::max(search_margin_, off + cells_[index].sag);
 }
 
-void BodyPatches::keep(std::size_t index, Cell cell) {
-  cells_[index] = std::move(cell);
+/// Sag and box of a cell whose quad stands.
+void BodyPatches::measure(std::size_t index) {
   Cell& kept = cells_[index];
   kept.sag = cell_sag(index);
   const auto& c = kept.quad.corner;
@@ -142,7 +158,6 @@ void BodyPatches::keep(std::size_t index, Cell cell) {
   for (const Vec3& corner : c) box.radius = std::max(box.radius, (corner - box.centre).norm());
   box.radius += kept.sag;
   box.off = 0.25 * (c[0] - c[1] + c[2] - c[3]).norm() + kept.sag;  // its corners leave one plane
-  search_margin_ = std::max(search_margin_, kept.sag);
 }
 
 /// Where the parameters of a cell bend its quad far along the surface, its halves tell better how far that leaves the

@@ -74,7 +74,12 @@ class BodyPatches {
   BodyPatches(const tooth_space::ToothSpace& space, BodyRing ring, std::size_t cells);
 
   /// Cells of one piece that lie beside each other and share the bound of their second derivatives.
-  void add_block(tooth_space::Piece piece, const std::vector<SheetCell>& cells);
+  struct SheetBlock {
+    tooth_space::Piece piece = tooth_space::Piece::tip;
+    std::vector<SheetCell> cells;
+  };
+  /// Made on all threads, kept in their order.
+  void add_blocks(const std::vector<SheetBlock>& blocks);
   /// A cell of another surface, from the low and high ends of its parameters. `found_by`: the corners by which a search
   /// finds it, along both parameters: (low, low), (high, low), (low, high), (high, high).
   void add(std::size_t index, BodySurface surface, const Vec2& low, const Vec2& high,
@@ -117,6 +122,12 @@ class BodyPatches {
     tooth_space::Piece piece = tooth_space::Piece::tip;
     PatchFrame frame;
     PatchBend bend;
+    bool sampled = false;
+  };
+  /// A block with its cells; those whose bound is found only of smaller boxes are blocks of their own.
+  struct MadeBlock {
+    Block block;
+    std::vector<SheetCell> cells;
   };
   struct Cell {
     BodySurface surface;
@@ -136,10 +147,11 @@ class BodyPatches {
   [[nodiscard]] double edge_azimuth(int which, double s) const;
   [[nodiscard]] Vec3 land(double share, double s) const;
   [[nodiscard]] PatchBend land_bend(double s_from, double s_to);
-  [[nodiscard]] PatchBend sheet_bend(const Block& block, double half_a, double half_b);
+  [[nodiscard]] PatchBend sheet_bend(const Block& block, double half_a, double half_b) const;
+  void make(const SheetBlock& block, std::vector<MadeBlock>& out) const;
   [[nodiscard]] double cell_sag(std::size_t index) const;
   [[nodiscard]] std::optional<Vec3> settled_sheet(const Block& block, Vec2 uv) const;
-  void keep(std::size_t index, Cell cell);
+  void measure(std::size_t index);
 
   const tooth_space::ToothSpace& space_;
   BodyRing ring_;

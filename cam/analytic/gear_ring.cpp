@@ -1,5 +1,8 @@
 #include "cam/analytic/gear_ring.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -361,7 +364,7 @@ class Maker {
     ring.border_sag = border_sag_;
     R.patches = std::make_unique<BodyPatches>(space_, std::move(ring), R.cells.size());
     // Blocks of the sheet: fillets bend quickly across, and slowly along the tooth.
-    std::map<std::array<std::size_t, 3>, std::vector<BodyPatches::SheetCell>> blocks;
+    std::map<std::array<std::size_t, 3>, BodyPatches::SheetBlock> blocks;
     const auto& st = R.sheet.stations();
     const std::size_t first_row = station_.empty() ? 0 : station_.front().row;
     for (std::size_t n = 0; n < station_.size(); ++n) {
@@ -376,28 +379,50 @@ class Maker {
         cell.uv[c] = {nodes[c]->at.u, nodes[c]->at.v};
         cell.corner[c] = nodes[c]->at.contact.p;
       }
-      blocks[{(j - first_row) / (fillet ? 8 : 4), std::size_t(piece), fillet ? k : k / 4}].push_back(cell);
+      auto& block = blocks[{(j - first_row) / (fillet ? 8 : 4), std::size_t(piece), fillet ? k : k / 4}];
+      block.piece = piece;
+      block.cells.push_back(cell);
     }
-    for (const auto& [key, cells] : blocks) R.patches->add_block(tooth_space::Piece(key[1]), cells);
+    std::vector<BodyPatches::SheetBlock> in_order;
+    for (auto& [key, block] : blocks) in_order.push_back(std::move(block));
+    R.patches->add_blocks(in_order);
     for (const auto& other : others_)
       R.patches->add(other.index, other.surface, other.low, other.high, R.cells[other.index].corner);
   }
+
+  /// Facets of one cell of the sheet. Owners count from its first quad.
+  struct CellFacets {
+    std::vector<SheetQuad> quads;
+    std::array<std::vector<clearance::Facet>, 2> of;  // wholly on the ring, and the others
+    double sag = 0;
+  };
 
   /// The same surfaces for questions about points.
   void facets() {
     std::vector<clearance::Facet> edges;
     for (std::size_t n = 0; n < R.edges.size(); ++n)
       edges.push_back({{R.edges[n].a, R.edges[n].b, R.edges[n].b}, std::uint32_t(n)});
-    R.edge_facets = clearance::FacetTree(edges);
     std::array<std::vector<clearance::Facet>, 2> sheet;
     std::vector<clearance::Facet> others;
-    for (std::size_t n = 0; n < R.cells.size(); ++n) {
-      if (R.cells[n].sheet) add_quads(n, R.patches->quad(n), kFacetHalvings, sheet);
-      else if (R.patches->surface(n).piece != tooth_space::Piece::groove) add_other(n, others);
+    std::vector<CellFacets> cells(R.cells.size());
+    tbb::parallel_for(std::size_t(0), cells.size(), [&](std::size_t n) {
+      if (R.cells[n].sheet) add_quads(n, R.patches->quad(n), kFacetHalvings, cells[n]);
+    });
+    for (std::size_t n = 0; n < cells.size(); ++n) {
+      const auto first = std::uint32_t(R.quads.size());
+      R.quads.insert(R.quads.end(), cells[n].quads.begin(), cells[n].quads.end());
+      R.facet_sag = std::max(R.facet_sag, cells[n].sag);
+      for (std::size_t border = 0; border < 2; ++border)
+        for (clearance::Facet& facet : cells[n].of[border]) {
+          facet.owner += first;
+          sheet[border].push_back(facet);
+        }
+      if (!R.cells[n].sheet && R.patches->surface(n).piece != tooth_space::Piece::groove) add_other(n, others);
     }
-    R.whole_facets = clearance::FacetTree(sheet[0]);
-    R.border_facets = clearance::FacetTree(sheet[1]);
-    R.other_facets = clearance::FacetTree(others);
+    tbb::parallel_invoke([&] { R.edge_facets = clearance::FacetTree(edges); },
+                         [&] { R.whole_facets = clearance::FacetTree(sheet[0]); },
+                         [&] { R.border_facets = clearance::FacetTree(sheet[1]); },
+                         [&] { R.other_facets = clearance::FacetTree(others); });
   }
 
   /// How far a piece of the surface may leave the two facets of its quad: its sag over the hull of the four corners,
@@ -407,10 +432,8 @@ class Maker {
     return R.patches->sag(cell, quad) + distance_between(c[0], c[2], c[1], c[3]);
   }
 
-  /// The quads of a cell of the sheet, halved until their facets are close. `sheet`: wholly on the ring, and the
-  /// others.
-  void add_quads(std::size_t n, const BodyQuad& quad, int halvings,
-                 std::array<std::vector<clearance::Facet>, 2>& sheet) {
+  /// The quads of a cell of the sheet, halved until their facets are close.
+  void add_quads(std::size_t n, const BodyQuad& quad, int halvings, CellFacets& out) const {
     const double sag = facet_sag(n, quad);
     if (sag > kFacetSag && halvings > 0) {
       const auto halves = R.patches->halved(n, quad);
@@ -418,18 +441,18 @@ class Maker {
         return std::all_of(q.corner.begin(), q.corner.end(), [](const Vec3& c) { return c.allFinite(); });
       };
       if (exists(halves[0]) && exists(halves[1])) {
-        for (const auto& half : halves) add_quads(n, half, halvings - 1, sheet);
+        for (const auto& half : halves) add_quads(n, half, halvings - 1, out);
         return;
       }
     }
-    R.facet_sag = std::max(R.facet_sag, sag);
+    out.sag = std::max(out.sag, sag);
     const auto& c = quad.corner;
     const bool border = !std::all_of(c.begin(), c.end(), [&](const Vec3& p) { return R.on_ring(p); });
     const Vec2 uv = R.patches->parameters(n, 0.25 * (quad.at[0] + quad.at[1] + quad.at[2] + quad.at[3]));
-    const auto owner = std::uint32_t(R.quads.size());
-    R.quads.push_back({R.cells[n].piece, std::uint8_t(R.cells[n].band), border, uv.x(), uv.y()});
-    sheet[border].push_back({{c[0], c[1], c[2]}, owner});
-    sheet[border].push_back({{c[0], c[2], c[3]}, owner});
+    const auto owner = std::uint32_t(out.quads.size());
+    out.quads.push_back({R.cells[n].piece, std::uint8_t(R.cells[n].band), border, uv.x(), uv.y()});
+    out.of[border].push_back({{c[0], c[1], c[2]}, owner});
+    out.of[border].push_back({{c[0], c[2], c[3]}, owner});
   }
 
   void add_other(std::size_t n, std::vector<clearance::Facet>& others) {

@@ -19,9 +19,11 @@ namespace toothpath::analytic {
 namespace {
 
 constexpr std::size_t kChunk =
-    256;  // motions that one thread checks one after another; the same on any number of threads
-constexpr std::size_t kTogether = 256 * kChunk;  // that wait for all threads
-constexpr std::size_t kWave = 64;                // chunks behind which a path that is refused is followed no farther
+    64;  // motions that one thread checks one after another; the same on any number of threads
+constexpr std::size_t kSampled =
+    16;  // of so many chunks one goes ahead: what it finds the others need not follow closely
+constexpr std::size_t kTogether = 1024 * kChunk;  // that wait for all threads
+constexpr std::size_t kWave = 256;                // chunks behind which a path that is refused is followed no farther
 constexpr double kBodyLook = 0.3;  // mm: gaps of shank and holder are followed this far beyond the clearance
 constexpr double kAhead =
     0.4;  // mm: and this much farther where a body is looked at anew, so that later motions need not
@@ -325,14 +327,13 @@ void GougeStream::work() {
   if (waiting_.empty()) return;
   std::vector<proof::GougeResult> chunks((waiting_.size() + kChunk - 1) / kChunk);
   WorkShare share(double(chunks.size()), double(waiting_.size()));
-  tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t n) {
-    const proof::GougeResult* before = before_likes_ ? &*before_likes_ : nullptr;
-    Chunk chunk(check_.part_, check_.tools_, check_.options_, likes_follow_ && !before, before);
+  const auto look = [&](std::size_t n, const proof::GougeResult& elsewhere) {
+    Chunk chunk(check_.part_, check_.tools_, check_.options_, likes_follow_ && !before_likes_, &elsewhere);
     std::vector<double> known;
     for (std::size_t k = n * kChunk; k < std::min(waiting_.size(), (n + 1) * kChunk); ++k) {
       const Waiting& w = waiting_[k];
       const int tool = tool_of_operation_[std::size_t(w.motion.operation)];
-      if (before) {
+      if (before_likes_) {
         proven_->of(w.as, arms_[std::size_t(tool)], known);
         chunk.check(w.motion, tool, known);
       } else {
@@ -341,6 +342,15 @@ void GougeStream::work() {
     }
     chunks[n] = chunk.finish();
     share.add();
+  };
+  const proof::GougeResult before = before_likes_ ? *before_likes_ : out_;
+  const std::size_t samples = (chunks.size() + kSampled - 1) / kSampled;
+  tbb::parallel_for(std::size_t(0), samples, [&](std::size_t n) { look(n * kSampled, before); });
+  proof::GougeResult ahead = before;
+  for (std::size_t n = 0; n < samples; ++n)
+    ahead.measured_mm = std::max(ahead.measured_mm, chunks[n * kSampled].measured_mm);
+  tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t n) {
+    if (n % kSampled != 0) look(n, ahead);
   });
   for (const auto& chunk : chunks) proof::add_result(out_, chunk);
   waiting_.clear();
@@ -356,16 +366,18 @@ std::vector<path::ToolMotion> GougeCheck::motions_of(const path::ClPath& path) {
 }
 
 /// The motions of one tool in their order, all of those beside the first that is refused left out: a path that is wrong
-/// in many places costs no more than one that is right.
+/// in many places costs no more than one that is right. What passes is followed no closer than it takes to see that.
 proof::GougeResult GougeCheck::until_fault(const std::vector<path::ToolMotion>& motions, std::size_t tool) const {
   const std::size_t count = (motions.size() + kChunk - 1) / kChunk;
   const WorkShare all{double(motions.size())};
+  auto accepted = proof::no_motion_yet(options_.limits.clearance_mm);
+  accepted.measured_mm = options_.limits.gouge_mm;
   auto out = proof::no_motion_yet(options_.limits.clearance_mm);
   for (std::size_t from = 0; from < count && passes(out); from += kWave) {
     std::vector<proof::GougeResult> wave(std::min(kWave, count - from));
     WorkShare share(double(wave.size()), double(wave.size() * kChunk));
     tbb::parallel_for(std::size_t(0), wave.size(), [&](std::size_t n) {
-      Chunk chunk(part_, tools_, options_, false);
+      Chunk chunk(part_, tools_, options_, false, &accepted);
       const std::size_t begin = (from + n) * kChunk, end = std::min(motions.size(), begin + kChunk);
       for (std::size_t k = begin; k < end && passes(chunk.so_far()); ++k) chunk.check(motions[k], int(tool));
       wave[n] = chunk.finish();

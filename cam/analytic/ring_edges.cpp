@@ -1,7 +1,10 @@
 #include "cam/analytic/ring_edges.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace toothpath::analytic {
 namespace {
@@ -47,22 +50,25 @@ void prove(const tooth_space::ToothSpace& space, const std::vector<EndPlace>& pl
 
 std::vector<double> end_edge_sags(const tooth_space::ToothSpace& space, const std::vector<EndPlace>& places) {
   std::vector<double> sags(places.size(), -1);
+  std::vector<std::pair<std::size_t, std::size_t>> stretches;
   for (std::size_t from = 0, to = 0; from + 1 < places.size(); from = to) {
     to = from + 1;
     while (to + 1 < places.size() && to < from + kStretch && places[to].piece == places[from].piece) ++to;
-    prove(space, places, from, to, sags);
+    stretches.emplace_back(from, to);
   }
+  tbb::parallel_for(std::size_t(0), stretches.size(),
+                    [&](std::size_t n) { prove(space, places, stretches[n].first, stretches[n].second, sags); });
   return sags;
 }
 
 std::vector<std::optional<CurveBend>> tip_bends(const tooth_space::ToothSpace& space, int side,
                                                 const std::vector<std::optional<tooth_space::EdgePlace>>& places,
                                                 const std::vector<double>& stations) {
-  std::vector<std::optional<CurveBend>> bends;
-  for (std::size_t k = 0; k + 1 < places.size(); ++k)
-    bends.push_back(places[k] && places[k + 1]
-                        ? space.tip_azimuth(side, *places[k], stations[k], *places[k + 1], stations[k + 1])
-                        : std::nullopt);
+  std::vector<std::optional<CurveBend>> bends(places.empty() ? 0 : places.size() - 1);
+  tbb::parallel_for(std::size_t(0), bends.size(), [&](std::size_t k) {
+    if (places[k] && places[k + 1])
+      bends[k] = space.tip_azimuth(side, *places[k], stations[k], *places[k + 1], stations[k + 1]);
+  });
   return bends;
 }
 
