@@ -1,5 +1,6 @@
 #include "cam/cut/cut_surface.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -26,6 +27,8 @@ struct LinePoint {
   tooth_space::Piece piece = tooth_space::Piece::root;
   double sigma = 0, left = 0;
 };
+
+constexpr std::size_t kLinePlaces = 32;  // that are asked for one after the other
 
 /// Pieces of a space that the fine lines of a zone take as long as, and that finding all places does.
 constexpr double kLinesWorth = 5, kPlacesWorth = 20;
@@ -61,11 +64,12 @@ class Meter {
   }
 
  private:
-  [[nodiscard]] std::vector<float> excess_of(const Vec3& p) const {
+  /// @param answered  the motion of every path that was nearest at a place beside it
+  [[nodiscard]] std::vector<float> excess_of(const Vec3& p, std::vector<std::size_t>& answered) const {
     std::vector<float> e;
     double least = o_.cap_mm;
-    for (const auto& path : paths_) {
-      least = std::min(least, path->excess(p, least));
+    for (std::size_t n = 0; n < paths_.size(); ++n) {
+      least = std::min(least, paths_[n]->excess(p, least, &answered[n]));
       e.push_back(float(least * 1000));
     }
     return e;
@@ -88,12 +92,13 @@ class Meter {
     g.reachable.assign(patch.reachable.begin(), patch.reachable.end());
     std::vector<std::vector<float>> excess(count);
     tbb::parallel_for(0, g.columns, [&](int column) {
+      std::vector<std::size_t> answered(paths_.size(), SIZE_MAX);
       for (int row = 0; row < g.rows; ++row) {
         const std::size_t k = std::size_t(row) * std::size_t(g.columns) + std::size_t(column);
         if (!patch.at[k]) continue;
         g.points[k] = patch.at[k]->contact.p;
         g.normals[k] = patch.at[k]->contact.n;
-        excess[k] = excess_of(g.points[k]);
+        excess[k] = excess_of(g.points[k], answered);
       }
       share.add();
     });
@@ -133,9 +138,13 @@ class Meter {
 
   [[nodiscard]] std::vector<LinePoint> line_across(const LinePlaces& line) const {
     std::vector<LinePoint> points(line.places.size());
-    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
-      const LinePlaces::Place& place = line.places[k];
-      points[k] = {place.piece, place.sigma, left_on(place.p)};
+    using Range = tbb::blocked_range<std::size_t>;
+    tbb::parallel_for(Range(0, points.size(), kLinePlaces), [&](const Range& range) {
+      std::size_t answered = SIZE_MAX;
+      for (std::size_t k = range.begin(); k < range.end(); ++k) {
+        const LinePlaces::Place& place = line.places[k];
+        points[k] = {place.piece, place.sigma, left_on(place.p, &answered)};
+      }
     });
     return points;
   }
@@ -144,8 +153,8 @@ class Meter {
     const auto s = places.at(sigma, r);
     return left_on(s ? std::optional(s->contact.p) : std::nullopt);
   }
-  [[nodiscard]] double left_on(const std::optional<Vec3>& p) const {
-    return p ? paths_.back()->excess(*p, o_.cap_mm) - operations_.back().allowance_mm : 0;
+  [[nodiscard]] double left_on(const std::optional<Vec3>& p, std::size_t* answered = nullptr) const {
+    return p ? paths_.back()->excess(*p, o_.cap_mm, answered) - operations_.back().allowance_mm : 0;
   }
 
   void count_cusps(const ZonePlaces& places, double r, const std::vector<LinePoint>& line) {

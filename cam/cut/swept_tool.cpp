@@ -72,15 +72,26 @@ std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions
 
 }  // namespace
 
-double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const path::ToolMotion& m, double enough,
-                      double near) {
-  const AtMoment first = at_moment(p, body, m, 0);
+MotionReach::MotionReach(const path::ToolMotion& m) : way((m.tip_to - m.tip_from).norm()) {
+  const double half = std::min(0.5 * (m.axis_to - m.axis_from).norm(), 0.9999);
+  turn = 2 * half / std::sqrt(1 - half * half);
+}
+
+double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const path::ToolMotion& m,
+                      const MotionReach& reach, double enough, double near) {
   // Seen from the tool, the place goes no farther than `way` + turn arm, and leaves the tangent of its way by no more
   // than `bends`; the distance is convex in the place, with a slope of 1 at most.
-  const double way = (m.tip_to - m.tip_from).norm(), arm = (p - m.tip_from).norm() + way,
-               half = std::min(0.5 * (m.axis_to - m.axis_from).norm(), 0.9999),
-               turn = 2 * half / std::sqrt(1 - half * half),
-               bends = 0.5 * (turn * turn * std::sqrt(1 + turn * turn) * arm + 2 * turn * way);
+  const double way = reach.way, turn = reach.turn;
+  const Vec3 d = p - m.tip_from;
+  const double h = d.dot(m.axis_from), arm = d.norm() + way;
+  // Most places are beyond a cylinder about the body, all the way.
+  const tool::Frustum& core = body.core;
+  const double beyond =
+      std::max({(d - h * m.axis_from).norm() - body.widest(), core.from - body.round - h, h - core.to - body.round}) -
+      way - turn * arm;
+  if (beyond > enough) return beyond;
+  const AtMoment first = at_moment(p, body, m, 0);
+  const double bends = 0.5 * (turn * turn * std::sqrt(1 + turn * turn) * arm + 2 * turn * way);
   if (first.distance + std::max(std::min(first.rate, 0.0) - bends, -way - turn * arm) > enough) return first.distance;
   if (first.distance < near) return first.distance;
   const AtMoment last = at_moment(p, body, m, 1);
@@ -105,26 +116,36 @@ double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const pat
 SweptTool::SweptTool(std::vector<path::ToolMotion> motions, std::vector<tool::RoundedFrustum> cutting, double top_mm)
     : motions_(std::move(motions)),
       cutting_(std::move(cutting)),
+      reaches_(motions_.begin(), motions_.end()),
       index_(boxes_of(motions_, cutting_, top_mm, owners_)) {}
 
-double SweptTool::excess(const Vec3& p, double cap) const {
+double SweptTool::excess(const Vec3& p, double cap, std::size_t* answered) const {
+  const std::size_t bodies = cutting_.size(), all = motions_.size() * bodies;
   double best = cap;
+  std::size_t nearest = SIZE_MAX;
+  const auto look = [&](std::size_t owner) {
+    const double d = distance_from(owner, p, best);
+    if (!(d < best)) return;
+    best = d;
+    nearest = owner;
+  };
+  if (answered && *answered < all)
+    for (const std::size_t owner : {*answered, *answered + bodies, *answered - bodies})
+      if (owner < all) look(owner);
   std::array<std::size_t, kSeen> seen;
   seen.fill(SIZE_MAX);
-  index_.near(p, std::max(cap, 0.0), [&](std::size_t box, double) {
-    const std::size_t owner = owners_[box], k = owner / cutting_.size();
-    if (std::exchange(seen[owner % kSeen], owner) == owner) return std::max(best, 0.0);
-    best = std::min(best, least_distance(p, cutting_[owner % cutting_.size()], motions_[k], best));
+  index_.near(p, std::max(best, 0.0), [&](std::size_t box, double) {
+    const std::size_t owner = owners_[box];
+    if (std::exchange(seen[owner % kSeen], owner) != owner) look(owner);
     return std::max(best, 0.0);
   });
+  if (answered && nearest != SIZE_MAX) *answered = nearest;
   return best;
 }
 
 bool SweptTool::comes_within(std::size_t count, const Vec3& p, double near_mm, std::size_t* answered) const {
   const std::size_t bodies = cutting_.size(), all = std::min(count, motions_.size()) * bodies;
-  const auto comes = [&](std::size_t owner) {
-    return least_distance(p, cutting_[owner % bodies], motions_[owner / bodies], near_mm, near_mm) < near_mm;
-  };
+  const auto comes = [&](std::size_t owner) { return distance_from(owner, p, near_mm, near_mm) < near_mm; };
   if (answered && *answered < all)
     for (const std::size_t owner : {*answered, *answered + bodies, *answered - bodies})
       if (owner < all && comes(owner)) {
@@ -156,8 +177,8 @@ Removed::Removed(std::vector<path::ToolMotion> motions, const tool::ProofTool& t
   balls_ = std::make_unique<SweptPath>(std::move(moves), R);
 }
 
-double Removed::excess(const Vec3& p, double cap) const {
-  double e = balls_ ? balls_->excess(p, cap) : tool_->excess(p, cap);
+double Removed::excess(const Vec3& p, double cap, std::size_t* answered) const {
+  double e = balls_ ? balls_->excess(p, cap) : tool_->excess(p, cap, answered);
   for (const Removed* other : others_) e = other->excess(p, e);
   return e;
 }

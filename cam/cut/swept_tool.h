@@ -13,12 +13,22 @@
 
 namespace toothpath::cut {
 
+/// How far a motion takes what it moves: `way` of the tip [mm], and turn [mm for each mm from it].
+struct MotionReach {
+  explicit MotionReach(const path::ToolMotion& motion);
+  double way = 0, turn = 0;
+};
+
 /// Least signed distance from a point to a body over all moments of a motion (straight in the tip, normalised linear in
 /// the axis), negative inside. The distance is convex along a motion whose axis stands and, up to the square of the
 /// turn, along one that turns; its least is found to 1e-9 mm from the middle and both ends. Where `enough` is not
 /// undercut anything above it may be returned, and as soon as `near` is undercut what was found.
 [[nodiscard]] double least_distance(const Vec3& point, const tool::RoundedFrustum& body, const path::ToolMotion& motion,
-                                    double enough, double near = -INFINITY);
+                                    const MotionReach& reach, double enough, double near = -INFINITY);
+[[nodiscard]] inline double least_distance(const Vec3& point, const tool::RoundedFrustum& body,
+                                           const path::ToolMotion& motion, double enough) {
+  return least_distance(point, body, motion, MotionReach(motion), enough);
+}
 
 class SweptTool {
  public:
@@ -28,17 +38,23 @@ class SweptTool {
 
   /// min over the path of the distance to the cutting part: > 0 material left at p, < 0 removed that deep. Values above
   /// `cap` are returned as `cap`. mm.
-  [[nodiscard]] double excess(const Vec3& p, double cap) const;
-  /// Is it less than `near_mm` after the first `count` motions? Any of them that comes so near answers.
   /// @param answered  kept by who asks of one place after another: the motion that answered last, asked first with
   ///                  those beside it. It makes the answer cheaper, not another one. SIZE_MAX: none yet.
+  [[nodiscard]] double excess(const Vec3& p, double cap, std::size_t* answered = nullptr) const;
+  /// Is it less than `near_mm` after the first `count` motions? Any of them that comes so near answers.
   [[nodiscard]] bool comes_within(std::size_t count, const Vec3& p, double near_mm,
                                   std::size_t* answered = nullptr) const;
 
  private:
+  [[nodiscard]] double distance_from(std::size_t owner, const Vec3& p, double enough, double near = -INFINITY) const {
+    const std::size_t k = owner / cutting_.size();
+    return least_distance(p, cutting_[owner % cutting_.size()], motions_[k], reaches_[k], enough, near);
+  }
+
   std::vector<path::ToolMotion> motions_;
   std::vector<tool::RoundedFrustum> cutting_;
-  std::vector<std::size_t> owners_;  ///< of the boxes of the index: motion times the number of bodies, and body
+  std::vector<MotionReach> reaches_;  ///< of the motions
+  std::vector<std::size_t> owners_;   ///< of the boxes of the index: motion times the number of bodies, and body
   analytic::SpatialIndex index_;
 };
 
@@ -51,8 +67,8 @@ class Removed {
   Removed(std::vector<path::ToolMotion> motions, const tool::ProofTool& tool, double top_mm);
   /// Counts another one in; it must outlive this one.
   void also(const Removed* other) { others_.push_back(other); }
-  /// As `SweptPath::excess`.
-  [[nodiscard]] double excess(const Vec3& p, double cap) const;
+  /// As `SweptTool::excess`.
+  [[nodiscard]] double excess(const Vec3& p, double cap, std::size_t* answered = nullptr) const;
   /// Is it less than `near_mm`?
   [[nodiscard]] bool comes_within(const Vec3& p, double near_mm, std::size_t* answered = nullptr) const;
 

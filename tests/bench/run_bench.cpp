@@ -2,6 +2,9 @@
 // one thread and on all, one after the other, so that the rows of a job can be compared; both must write the same
 // program.
 //
+//   toothpath_run_bench --stages [JOB.toml ...]   wall seconds of every stage on 1, 2, 4 .. threads, and what of it no
+//   second thread takes: where a thread takes t1 and n take tn, s = (n tn - t1) / (n - 1) by Amdahl's rule; 16 threads
+//   would take s + (t1 - s) / 16
 //   toothpath_run_bench [JOB.toml ...]      without a job: the samples that finish with ball mills and by the line, and
 //   a bevel gear whose 60 teeth stand off the C axis and are written out: as a multiple of the same gear on the axis,
 //   where one tooth stands for all
@@ -9,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -89,6 +93,62 @@ bool rows(const std::string& job, int all, const fs::path& dir, double& one) {
   return same;
 }
 
+constexpr int kRepeats = 3;  // the fastest counts
+constexpr int kWanted = 16;
+constexpr double kShownStage = 0.02;  // s
+
+/// Seconds of the stages, in their order, and of the whole run as the last one.
+using Stages = std::vector<std::pair<std::string, double>>;
+
+Stages fastest(const std::string& job, int threads, const fs::path& dir, std::string& program) {
+  Stages best;
+  for (int k = 0; k < kRepeats; ++k) {
+    fs::remove_all(dir);
+    const Run r = run(job, threads, dir);
+    if (r.exit_code != 0) return {};
+    program = r.program;
+    Stages now;
+    // Parsed without the order of its keys: that of the text is the order in which they ran.
+    const auto ordered = nlohmann::ordered_json::parse(text_of(dir / "report.json"));
+    for (const auto& [name, seconds] : ordered["stages"].items()) now.emplace_back(name, seconds.get<double>());
+    now.emplace_back("run", r.wall);
+    if (best.empty()) best = now;
+    for (std::size_t n = 0; n < best.size() && n < now.size(); ++n)
+      best[n].second = std::min(best[n].second, now[n].second);
+  }
+  return best;
+}
+
+/// @return did all runs end well, with the same program?
+bool stage_rows(const std::string& job, int all, const fs::path& dir) {
+  std::vector<int> threads;
+  for (int n = 1; n < all; n *= 2) threads.push_back(n);
+  threads.push_back(all);
+  std::vector<Stages> of;
+  std::string first, program;
+  for (const int n : threads) {
+    of.push_back(fastest(job, n, dir, program));
+    if (of.back().empty() || of.back().size() != of.front().size() || (n > 1 && program != first)) {
+      std::printf("%s: no run, or another program, on %d threads\n", job.c_str(), n);
+      return false;
+    }
+    if (n == 1) first = program;
+  }
+  std::printf("%-28s", fs::path(job).stem().c_str());
+  for (const int n : threads) std::printf(" %4d thr", n);
+  std::printf("    alone  %2d thr\n", kWanted);
+  for (std::size_t k = 0; k < of.front().size(); ++k) {
+    const double one = of.front()[k].second, most = of.back()[k].second;
+    if (one < kShownStage) continue;
+    const double alone = std::clamp((all * most - one) / (all - 1), 0.0, one);
+    std::printf("  %-26s", of.front()[k].first.c_str());
+    for (const Stages& stages : of) std::printf(" %8.2f", stages[k].second);
+    std::printf(" %8.2f %7.2f\n", alone, alone + (one - alone) / kWanted);
+  }
+  std::fflush(stdout);
+  return true;
+}
+
 /// Writes the bevel wheel of the samples with 60 teeth. Ends the program where the sample has no such line any more.
 std::string bevel_job(const char* machine, const char* origin, const fs::path& dir) {
   std::string text = text_of(fs::path(TOOTHPATH_SAMPLES) / "bevel_wheel.toml");
@@ -134,12 +194,22 @@ bool bevel_rows(int all, const fs::path& dir, const fs::path& jobs) {
 
 int main(int count, char** words) {
   std::vector<std::string> jobs(words + 1, words + count);
+  const bool stages = !jobs.empty() && jobs.front() == "--stages";
+  if (stages) jobs.erase(jobs.begin());
   const bool own = jobs.empty();
+  const std::vector<const char*> names =
+      stages ? std::vector{"dhfg_paper", "dhfg_t600s", "dhfg_ball", "offset_line", "spiral_bevel"}
+             : std::vector{"dhfg_ball", "dhfg_paper", "dhfg_t600s", "short_tool"};
   if (own)
-    for (const char* name : {"dhfg_ball", "dhfg_paper", "dhfg_t600s", "short_tool"})
-      jobs.push_back(std::string(TOOTHPATH_SAMPLES) + "/" + name + ".toml");
+    for (const char* name : names) jobs.push_back(std::string(TOOTHPATH_SAMPLES) + "/" + name + ".toml");
   const int all = std::max(2, int(std::thread::hardware_concurrency()));
   const fs::path dir = fs::temp_directory_path() / ("toothpath_run_bench." + std::to_string(getpid()));
+  if (stages) {
+    bool good = true;
+    for (const std::string& job : jobs) good = stage_rows(job, all, dir) && good;
+    fs::remove_all(dir);
+    return good ? 0 : 1;
+  }
   std::printf("%-28s %3s %8s %8s %8s %9s | %8s %8s %8s %9s\n", "job", "thr", "cpu s", "wall s", "cpu/wall", "peak MB",
               "gouge um", "bound um", "left um", "bytes");
   bool good = true;

@@ -342,13 +342,26 @@ void MilledCheck::meet(const readback::OperationTrace&, std::span<const path::To
   }
 }
 
+cut::CutSurface MilledCheck::measured(std::vector<path::ToolMotion> firsts, double watch_mm) {
+  const auto same_way = [](const path::ToolMotion& a, const path::ToolMotion& b) {
+    return a.tip_from == b.tip_from && a.tip_to == b.tip_to && a.axis_from == b.axis_from && a.axis_to == b.axis_to &&
+           a.operation == b.operation && a.tooth == b.tooth && a.rapid == b.rapid;
+  };
+  if (!last_ || last_->watch_mm != watch_mm ||
+      !std::equal(firsts.begin(), firsts.end(), last_->motions.begin(), last_->motions.end(), same_way)) {
+    cut::CutSurface found = meter_.measure(firsts, watch_mm);
+    last_ = Measured{std::move(firsts), watch_mm, std::move(found)};
+  }
+  return last_->surface;
+}
+
 void MilledCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   std::vector<int> tool_of_operation;
   for (const auto& operation : job_.operations) tool_of_operation.push_back(operation.tool);
   OtherTeeth others(program, *this);
   process::LoadedOtherwise loaded(program, *this);
   const std::vector<path::ToolMotion> firsts = process::first_in_space_0(program.motions, teeth());
-  surface = clock.run("cut surface", [&] { return meter_.measure(firsts, others.watch_mm()); });
+  surface = clock.run("cut surface", [&] { return measured(firsts, others.watch_mm()); });
   std::optional<process::LoadJudge> load;
   if (program.others_text)
     clock.run("engagement", [&] {

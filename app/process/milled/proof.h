@@ -2,6 +2,10 @@
 // rapids about the blank, the cut surface.
 #pragma once
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "app/process/load_judge.h"
 #include "app/process/milled/body.h"
 #include "app/process/program_proof.h"
@@ -41,6 +45,7 @@ class MilledCheck final : public process::GearCheck {
   class OtherTeeth;
   [[nodiscard]] const tool::ProofTool& tool_of(int operation) const;
   void judge_unlike(process::ProgramProof& program, const OtherTeeth& others);
+  [[nodiscard]] cut::CutSurface measured(std::vector<path::ToolMotion> firsts, double watch_mm);
   [[nodiscard]] process::LoadJudge load_judge() const;
 
   const job::Job& job_;
@@ -52,6 +57,13 @@ class MilledCheck final : public process::GearCheck {
   std::vector<tool::ProofTool> tools_;  // of the job
   std::string into_web_;                // what was met first that comes too low; empty: nothing does
   cut::SurfaceMeter meter_;
+  /// Of the program measured last: one that goes the same ways leaves the same.
+  struct Measured {
+    std::vector<path::ToolMotion> motions;
+    double watch_mm = 0;
+    cut::CutSurface surface;
+  };
+  std::optional<Measured> last_;
 };
 
 }  // namespace toothpath::milled

@@ -641,7 +641,7 @@ TEST(SweptTools, NothingThatIsLeastIsLeftOut) {
       motions.push_back(m);
     }
     const cut::SweptTool swept(motions, tool.cutting, 100);
-    std::size_t answered = SIZE_MAX;
+    std::size_t answered = SIZE_MAX, nearest = SIZE_MAX;
     int near = 0;
     for (int k = 0; k < 400; ++k) {
       const auto& m = motions[random.index(motions.size())];
@@ -653,6 +653,7 @@ TEST(SweptTools, NothingThatIsLeastIsLeftOut) {
       const double found = swept.excess(p, cap);
       EXPECT_GE(found, least);
       EXPECT_LE(found, least + 1e-9) << k;
+      EXPECT_EQ(swept.excess(p, cap, &nearest), found) << k;
       EXPECT_EQ(swept.comes_within(motions.size(), p, cap), found < cap) << k;
       EXPECT_EQ(swept.comes_within(motions.size(), p, cap, &answered), found < cap) << k;
       double early = INFINITY;
