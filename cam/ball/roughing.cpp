@@ -1,5 +1,7 @@
 #include "cam/ball/roughing.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -236,17 +238,25 @@ class RoughingPlanner {
       const double da = std::abs(a - 0.5), db = std::abs(b - 0.5);
       return da != db ? da < db - 1e-12 : a < b;
     });
+    struct Line {
+      std::optional<SampledCurve> curve;
+      std::vector<std::pair<std::size_t, std::size_t>> stretches;
+    };
+    std::vector<Line> lines(shares.size());
+    tbb::parallel_for(std::size_t(0), shares.size(), [&](std::size_t n) {
+      lines[n].curve = sampled(height, shares[n]);
+      if (lines[n].curve) lines[n].stretches = cutting_stretches(lines[n].curve->points);
+    });
     bool opens = true;
-    for (double share : shares) {
-      const auto line = sampled(height, share);
+    for (std::size_t n = 0; n < lines.size(); ++n) {
+      const auto& [line, stretches] = lines[n];
       if (!line) return fail("the layer {:.4f} mm above the root cannot be followed", height);
-      const auto stretches = cutting_stretches(line->points);
       if (stretches.empty()) ++out_.skipped;
       for (const auto& [from, to] : stretches) {
         BallPass pass;
         pass.opens_layer = opens;
         pass.points.assign(line->points.begin() + long(from), line->points.begin() + long(to) + 1);
-        pass.outward = (share <= 0.5) == o_.climb;
+        pass.outward = (shares[n] <= 0.5) == o_.climb;
         if (!pass.outward) std::reverse(pass.points.begin(), pass.points.end());
         places_ += pass.points.size();
         if (places_ > kMostHeld) return too_many();
@@ -267,13 +277,14 @@ class RoughingPlanner {
   /// First and last points of the stretches in which a ball along these centres removes what earlier operations left:
   /// all of it where there were none.
   [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> cutting_stretches(
-      const std::vector<BallPass::Point>& points) {
+      const std::vector<BallPass::Point>& points) const {
     if (cleared_.empty()) return {{0, points.size() - 1}};
     std::vector<std::pair<std::size_t, std::size_t>> out;
+    std::vector<std::size_t> answered;
     double idle = INFINITY;  // way since the last stretch
     for (std::size_t k = 1; k < points.size(); ++k) {
       const double way = (points[k].centre - points[k - 1].centre).norm();
-      if (!cuts(points[k - 1].centre, points[k].centre, way)) {
+      if (!cuts(points[k - 1].centre, points[k].centre, way, answered)) {
         idle += way;
         continue;
       }
@@ -284,9 +295,10 @@ class RoughingPlanner {
     return out;
   }
 
-  [[nodiscard]] bool cuts(const Vec3& from, const Vec3& to, double way) {
+  /// @param answered  of every direction of a ball and every operation before: the motion that removed there last
+  [[nodiscard]] bool cuts(const Vec3& from, const Vec3& to, double way, std::vector<std::size_t>& answered) const {
     static const std::vector<Vec3> directions = lower_directions();
-    answered_.resize(directions.size() * cleared_.size(), SIZE_MAX);
+    answered.resize(directions.size() * cleared_.size(), SIZE_MAX);
     const auto& ring = sheet_.space().outline();
     const double worth = path::kSkinShare * 2 * o_.ball_radius_mm;
     const int places = std::max(1, int(std::ceil(way / (0.4 * o_.ball_radius_mm))));
@@ -301,9 +313,9 @@ class RoughingPlanner {
         const Vec3 q = centre + o_.ball_radius_mm * (down * directions[d]);
         const double s = chart().along(q);
         if (s < ring.s_from || s > ring.s_to || chart().up(q) > o_.blank_top_mm) continue;
-        std::size_t* answered = &answered_[d * cleared_.size()];
+        std::size_t* last = &answered[d * cleared_.size()];
         if (std::none_of(cleared_.begin(), cleared_.end(),
-                         [&](const cut::Removed* removed) { return removed->comes_within(q, worth, answered++); }))
+                         [&](const cut::Removed* removed) { return removed->comes_within(q, worth, last++); }))
           return true;
       }
     }
@@ -317,8 +329,6 @@ class RoughingPlanner {
   double top_ = 0, lowest_ = INFINITY;  ///< heights of centres: above all layers, and of the deepest
   std::vector<Walls> walls_;            ///< one a station
   std::size_t places_ = 0;              ///< of all passes
-  /// Of every direction of a ball and every operation before: the motion that removed there last.
-  std::vector<std::size_t> answered_;
   RoughingPasses out_;
 };
 
