@@ -343,7 +343,7 @@ void GougeStream::work() {
     chunks[n] = chunk.finish();
     share.add();
   };
-  const proof::GougeResult before = before_likes_ ? *before_likes_ : out_;
+  const proof::GougeResult& before = before_likes_ ? *before_likes_ : out_;
   const std::size_t samples = (chunks.size() + kSampled - 1) / kSampled;
   tbb::parallel_for(std::size_t(0), samples, [&](std::size_t n) { look(n * kSampled, before); });
   proof::GougeResult ahead = before;

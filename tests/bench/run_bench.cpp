@@ -108,7 +108,7 @@ Stages fastest(const std::string& job, int threads, const fs::path& dir, std::st
     if (r.exit_code != 0) return {};
     program = r.program;
     Stages now;
-    // Parsed without the order of its keys: that of the text is the order in which they ran.
+    // In the order in which they ran, which `Run::report` does not keep.
     const auto ordered = nlohmann::ordered_json::parse(text_of(dir / "report.json"));
     for (const auto& [name, seconds] : ordered["stages"].items()) now.emplace_back(name, seconds.get<double>());
     now.emplace_back("run", r.wall);

@@ -342,16 +342,14 @@ void MilledCheck::meet(const readback::OperationTrace&, std::span<const path::To
   }
 }
 
-cut::CutSurface MilledCheck::measured(std::vector<path::ToolMotion> firsts, double watch_mm) {
+const cut::CutSurface& MilledCheck::measured(const std::vector<path::ToolMotion>& firsts, double watch_mm) {
   const auto same_way = [](const path::ToolMotion& a, const path::ToolMotion& b) {
     return a.tip_from == b.tip_from && a.tip_to == b.tip_to && a.axis_from == b.axis_from && a.axis_to == b.axis_to &&
            a.operation == b.operation && a.tooth == b.tooth && a.rapid == b.rapid;
   };
   if (!last_ || last_->watch_mm != watch_mm ||
-      !std::equal(firsts.begin(), firsts.end(), last_->motions.begin(), last_->motions.end(), same_way)) {
-    cut::CutSurface found = meter_.measure(firsts, watch_mm);
-    last_ = Measured{std::move(firsts), watch_mm, std::move(found)};
-  }
+      !std::equal(firsts.begin(), firsts.end(), last_->motions.begin(), last_->motions.end(), same_way))
+    last_ = Measured{firsts, watch_mm, meter_.measure(firsts, watch_mm)};
   return last_->surface;
 }
 

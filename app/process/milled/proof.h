@@ -45,7 +45,7 @@ class MilledCheck final : public process::GearCheck {
   class OtherTeeth;
   [[nodiscard]] const tool::ProofTool& tool_of(int operation) const;
   void judge_unlike(process::ProgramProof& program, const OtherTeeth& others);
-  [[nodiscard]] cut::CutSurface measured(std::vector<path::ToolMotion> firsts, double watch_mm);
+  [[nodiscard]] const cut::CutSurface& measured(const std::vector<path::ToolMotion>& firsts, double watch_mm);
   [[nodiscard]] process::LoadJudge load_judge() const;
 
   const job::Job& job_;
